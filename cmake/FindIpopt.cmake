@@ -1,0 +1,13 @@
+# Ipopt 3.11 in Debian has neither a CMake package nor a version in its pkg-config file: find header and library.
+find_path(Ipopt_INCLUDE_DIR IpTNLP.hpp PATH_SUFFIXES coin coin-or)
+find_library(Ipopt_LIBRARY ipopt)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Ipopt REQUIRED_VARS Ipopt_LIBRARY Ipopt_INCLUDE_DIR)
+if(Ipopt_FOUND AND NOT TARGET Ipopt::Ipopt)
+  add_library(Ipopt::Ipopt UNKNOWN IMPORTED)
+  set_target_properties(Ipopt::Ipopt PROPERTIES
+    IMPORTED_LOCATION "${Ipopt_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${Ipopt_INCLUDE_DIR}"
+    INTERFACE_COMPILE_DEFINITIONS HAVE_CSTDDEF)
+endif()
+mark_as_advanced(Ipopt_INCLUDE_DIR Ipopt_LIBRARY)

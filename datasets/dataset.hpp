@@ -1,0 +1,73 @@
+// A data set: one robot, its trajectories and the recordings made of them, with where they came from.
+// On disk it is a set.json (docs/data_format.md) that refers to recording files beside it or holds them inline.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/recording.hpp"
+
+namespace odobench {
+
+// One robot parameter as the set states it; SI units.
+struct RobotParameter {
+  std::string name;
+  std::string unit;
+  double nominal = 0;
+  double lower = 0;
+  double upper = 0;
+};
+
+struct Robot {
+  std::string name;
+  std::string kinematics;                  // e.g. "4wis4wid"
+  std::vector<RobotParameter> parameters;  // for 4wis4wid: a1..a4, b1..b4, r1..r4
+};
+
+struct Trajectory {
+  std::string name;         // key that recordings refer to
+  std::string description;  // one line for people
+};
+
+struct SourceFile {
+  std::string path;    // as the source names it, relative
+  std::string sha256;  // lower-case hex
+};
+
+struct Provenance {
+  std::string source;       // who recorded it, where it was published
+  std::string licence;      // "none stated", "MIT", ...
+  std::string made_by;      // the command that made the set
+  std::vector<SourceFile> files;
+};
+
+// A named parameter vector that the set's makers published or know to be true ("published:lm", "truth").
+struct NamedParameters {
+  std::string name;
+  std::string description;
+  std::vector<double> values;  // in the order of Robot::parameters
+};
+
+struct Dataset {
+  std::string name;
+  std::string description;
+  Robot robot;
+  std::vector<Trajectory> trajectories;  // in table order
+  std::vector<Recording> recordings;
+  std::vector<NamedParameters> known_parameters;
+  Provenance provenance;
+  std::vector<std::string> notes;  // what the import repaired, counted: "3 stamps moved by 1 us in recording line_x_2"
+};
+
+// Reads set.json and everything it refers to; checks schema version, sums, lengths, finiteness, strictly increasing
+// stamps, known trajectory names, lower <= nominal <= upper. Throws DataError with file:line (or file and JSON path).
+Dataset load_dataset(const std::filesystem::path& set_json);
+
+// Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings" beside it.
+// Everything is written to temporary names and renamed when complete. Throws DataError when it cannot be written.
+void save_dataset(const Dataset& dataset, const std::filesystem::path& set_json, bool inline_recordings = false);
+
+}  // namespace odobench

@@ -1,0 +1,230 @@
+// The shared cost interface: a problem is anything with a cost.
+//
+// A model is a plain class with three mandatory members
+//     std::string name() const;
+//     const std::vector<ParameterInfo>& parameters() const;
+//     double cost(const ConstVectorRef& x) const;
+// and any of the optional ones below, which the handle detects by concepts and otherwise derives where that is
+// exact (gradient = 2 J'r, a batch as a loop of costs) or reports as absent.
+//
+// x is in the units of the parameters, n = parameters().size(). A cost with residuals is J(x) = r(x)'r(x), without
+// the factor 1/2. Models are immutable once built: every member is const and may be called from several threads.
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace odobench {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+using ConstVectorRef = Eigen::Ref<const Vector>;
+using VectorRef = Eigen::Ref<Vector>;
+using ConstMatrixRef = Eigen::Ref<const Matrix>;
+using MatrixRef = Eigen::Ref<Matrix>;
+
+// One calibrated quantity and its box. lower == upper means: held fixed.
+struct ParameterInfo {
+  std::string name;
+  std::string unit;
+  double nominal = 0;
+  double lower = 0;
+  double upper = 0;
+};
+
+// Throws std::invalid_argument naming the parameter, the values and the violated relation unless all are finite and
+// lower <= nominal <= upper, the list is not empty and the names are unique.
+void validate(const std::vector<ParameterInfo>& parameters);
+
+// J(x) = r'r, gradient half J'r (n) and Gauss-Newton matrix J'J (n x n, both triangles filled).
+struct NormalEquations {
+  double cost = 0;
+  Vector jtr;
+  Matrix jtj;
+};
+
+// Calls that reached the model. A batch of m candidates counts m cost calls.
+struct EvaluationCounts {
+  std::int64_t cost = 0;
+  std::int64_t gradient = 0;
+  std::int64_t residuals = 0;
+  std::int64_t normal_equations = 0;
+  std::int64_t total() const { return cost + gradient + residuals + normal_equations; }
+};
+
+template <class M>
+concept ProblemModel = requires(const M& m, const ConstVectorRef& x) {
+  { m.name() } -> std::convertible_to<std::string>;
+  { m.parameters() } -> std::convertible_to<const std::vector<ParameterInfo>&>;
+  { m.cost(x) } -> std::same_as<double>;
+};
+template <class M>
+concept HasGradient = requires(const M& m, const ConstVectorRef& x, VectorRef g) {
+  { m.cost_and_gradient(x, g) } -> std::same_as<double>;
+};
+// residual_count() rows; J is residual_count() x n.
+template <class M>
+concept HasResiduals = requires(const M& m, const ConstVectorRef& x, VectorRef r, MatrixRef j) {
+  { m.residual_count() } -> std::convertible_to<Eigen::Index>;
+  m.residuals(x, r);
+  m.residuals_and_jacobian(x, r, j);
+};
+template <class M>
+concept HasNormalEquations = requires(const M& m, const ConstVectorRef& x, NormalEquations& out) {
+  m.normal_equations(x, out);
+};
+// candidates n x m, one per column; costs m. The value of a candidate must not depend on its neighbours.
+template <class M>
+concept HasBatchCost = requires(const M& m, const ConstMatrixRef& candidates, VectorRef costs) {
+  m.batch_cost(candidates, costs);
+};
+template <class M>
+concept HasStart = requires(const M& m) {
+  { m.start() } -> std::convertible_to<Vector>;
+};
+// Lowest cost in the box, where it is known from theory.
+template <class M>
+concept HasKnownOptimum = requires(const M& m) {
+  { m.known_optimum() } -> std::convertible_to<double>;
+};
+
+// Value handle around a shared, immutable model; counts the evaluations made through it. Copying is cheap and the
+// copy starts with zeroed counts, so every run owns its own. One handle is not to be used from
+// two threads at once, except for batch_cost.
+class Problem {
+ public:
+  // Throws std::invalid_argument when the model's parameters are not valid.
+  template <ProblemModel M>
+  explicit Problem(std::shared_ptr<const M> model);
+  template <ProblemModel M>
+  explicit Problem(M model) : Problem(std::make_shared<const M>(std::move(model))) {}
+
+  Problem(const Problem& other) : model_(other.model_) {}
+  Problem& operator=(const Problem& other);
+  Problem(Problem&&) = default;
+  Problem& operator=(Problem&&) = default;
+  ~Problem() = default;
+
+  const std::string& name() const { return model_->name; }
+  const std::vector<ParameterInfo>& parameters() const { return model_->parameters; }
+  Eigen::Index dimension() const { return static_cast<Eigen::Index>(model_->parameters.size()); }
+  // The model's start, by default the nominal values.
+  const Vector& start() const { return model_->start; }
+  std::optional<double> known_optimum() const { return model_->known_optimum; }
+
+  bool has_gradient() const { return model_->has_gradient; }
+  bool has_residuals() const { return model_->has_residuals; }
+  bool has_normal_equations() const { return model_->has_normal_equations; }
+  bool has_fast_batch() const { return model_->has_batch; }
+  Eigen::Index residual_count() const { return model_->residual_count; }
+
+  double cost(const ConstVectorRef& x) const;
+  // Returns J, fills g = dJ/dx (n). Throws std::logic_error without has_gradient().
+  double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const;
+  // r (residual_count), j (residual_count x n). Throws std::logic_error without has_residuals().
+  void residuals(const ConstVectorRef& x, VectorRef r) const;
+  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const;
+  // Throws std::logic_error without has_normal_equations().
+  void normal_equations(const ConstVectorRef& x, NormalEquations& out) const;
+  void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
+
+  const EvaluationCounts& counts() const { return counts_; }
+
+ private:
+  struct Interface {
+    virtual ~Interface() = default;
+    virtual double cost(const ConstVectorRef& x) const = 0;
+    virtual double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const = 0;
+    virtual void residuals(const ConstVectorRef& x, VectorRef r) const = 0;
+    virtual void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const = 0;
+    virtual void normal_equations(const ConstVectorRef& x, NormalEquations& out) const = 0;
+    virtual void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const = 0;
+    std::string name;
+    std::vector<ParameterInfo> parameters;
+    Vector start;
+    std::optional<double> known_optimum;
+    bool has_gradient = false, has_residuals = false, has_normal_equations = false, has_batch = false;
+    Eigen::Index residual_count = 0;
+  };
+  template <ProblemModel M>
+  struct Holder;
+  [[noreturn]] static void absent(const char* capability, const std::string& problem);
+  static void adopt(Interface& model);
+
+  std::shared_ptr<const Interface> model_;
+  mutable EvaluationCounts counts_;
+};
+
+template <ProblemModel M>
+struct Problem::Holder final : Interface {
+  explicit Holder(std::shared_ptr<const M> m) : model(std::move(m)) {
+    name = model->name();
+    parameters = model->parameters();
+    if constexpr (HasStart<M>) start = model->start();
+    if constexpr (HasKnownOptimum<M>) known_optimum = model->known_optimum();
+    has_residuals = HasResiduals<M>;
+    has_normal_equations = HasNormalEquations<M> || HasResiduals<M>;
+    has_gradient = HasGradient<M> || has_normal_equations;
+    has_batch = HasBatchCost<M>;
+    if constexpr (HasResiduals<M>) residual_count = model->residual_count();
+  }
+  double cost(const ConstVectorRef& x) const override { return model->cost(x); }
+  double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const override {
+    if constexpr (HasGradient<M>) {
+      return model->cost_and_gradient(x, g);
+    } else {
+      NormalEquations e;
+      normal_equations(x, e);
+      g = 2.0 * e.jtr;
+      return e.cost;
+    }
+  }
+  void residuals(const ConstVectorRef& x, VectorRef r) const override {
+    if constexpr (HasResiduals<M>)
+      model->residuals(x, r);
+    else
+      absent("residuals", name);
+  }
+  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const override {
+    if constexpr (HasResiduals<M>)
+      model->residuals_and_jacobian(x, r, j);
+    else
+      absent("a Jacobian", name);
+  }
+  void normal_equations(const ConstVectorRef& x, NormalEquations& out) const override {
+    if constexpr (HasNormalEquations<M>) {
+      model->normal_equations(x, out);
+    } else if constexpr (HasResiduals<M>) {
+      Vector r(residual_count);
+      Matrix j(residual_count, static_cast<Eigen::Index>(parameters.size()));
+      model->residuals_and_jacobian(x, r, j);
+      out.cost = r.squaredNorm();
+      out.jtr = j.transpose() * r;
+      out.jtj = j.transpose() * j;
+    } else {
+      absent("normal equations", name);
+    }
+  }
+  void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const override {
+    if constexpr (HasBatchCost<M>) {
+      model->batch_cost(candidates, costs);
+    } else {
+      for (Eigen::Index k = 0; k < candidates.cols(); ++k) costs[k] = model->cost(candidates.col(k));
+    }
+  }
+  std::shared_ptr<const M> model;
+};
+
+template <ProblemModel M>
+Problem::Problem(std::shared_ptr<const M> model) {
+  auto holder = std::make_shared<Holder<M>>(std::move(model));
+  adopt(*holder);
+  model_ = std::move(holder);
+}
+
+}  // namespace odobench

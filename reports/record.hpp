@@ -1,0 +1,89 @@
+// One run = one record = one JSON line. Tables and plots are pure functions of records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace odobench {
+
+inline constexpr int kRecordSchemaVersion = 1;
+
+// e_n = max_k |estimate - reference| of one recording, for x, y [m] and theta [rad].
+struct RecordingError {
+  std::string recording;
+  std::string trajectory;
+  int repetition = 0;
+  std::array<double, 3> max_error{};  // x, y, theta
+};
+
+struct ParameterValue {
+  std::string name;
+  std::string unit;
+  double value = 0;
+  double nominal = 0;
+  double lower = 0;
+  double upper = 0;
+  std::string at_bound;  // "", "lower" or "upper"
+};
+
+struct TracePoint {
+  std::int64_t evaluations = 0;
+  double seconds = 0;
+  double cost = 0;  // best so far
+};
+
+struct RunContext {
+  std::string cpu;
+  std::string compiler;
+  std::string build_type;
+  std::string git_revision;
+  std::string version;
+  int threads = 1;
+};
+
+struct RunRecord {
+  std::string problem;
+  std::string dataset;         // name of the set
+  std::string dataset_sha256;  // of its set.json; empty without a set
+  std::string label;           // how tables call this row: "lm", "pso[variant=thesis]", "nominal", "published:lm"
+  std::string kind;            // "run" (a solver ran), "evaluation" (given parameters), "skipped" (cannot run)
+  std::string solver;          // registry name
+  std::map<std::string, std::string> options;  // every option with the value in force
+  std::string polish;                          // solver that polished the result, or ""
+  std::uint64_t seed = 0;                      // the derived seed
+  std::uint64_t base_seed = 0;
+  int repetition = 1;  // of the run, 1-based
+  std::string start;   // nominal | random
+
+  std::string termination;  // converged, target_reached, max_evaluations, ...
+  std::string message;      // the sentence with both numbers, or why it was skipped
+  std::optional<double> cost;
+  std::optional<double> cost_before_polish;
+  std::vector<ParameterValue> parameters;
+  std::vector<RecordingError> errors;
+  std::int64_t evaluations = 0;  // all calls
+  std::int64_t cost_evaluations = 0;
+  std::int64_t derivative_evaluations = 0;
+  std::int64_t non_finite = 0;
+  std::int64_t iterations = 0;
+  double seconds = 0;
+  std::vector<TracePoint> trace;
+  RunContext context;
+  std::string time_utc;  // ISO 8601 start of the run
+};
+
+nlohmann::json to_json(const RunRecord& record);
+// Throws std::runtime_error naming the field, what was found and what was expected.
+RunRecord record_from_json(const nlohmann::json& json);
+
+// One line, without a newline at its end.
+std::string to_json_line(const RunRecord& record);
+// Reads a .jsonl file; throws std::runtime_error "file:line: ...".
+std::vector<RunRecord> read_records(const std::string& path);
+
+}  // namespace odobench

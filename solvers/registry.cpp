@@ -1,0 +1,32 @@
+#include "solvers/registry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "solvers/levenberg_marquardt.hpp"
+
+namespace odobench {
+
+const std::vector<SolverEntry>& solver_registry() {
+  static const std::vector<SolverEntry> registry = [] {
+    std::vector<SolverEntry> rows;
+    rows.push_back(levenberg_marquardt_entry());
+    return rows;
+  }();
+  return registry;
+}
+
+const SolverEntry& find_solver(const std::string& name) {
+  const auto& rows = solver_registry();
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const SolverEntry& e) { return e.name == name; });
+  if (row != rows.end()) return *row;
+  std::vector<std::string> names;
+  for (const SolverEntry& e : rows) names.push_back(e.name);
+  const std::string near = nearest_name(name, names);
+  throw std::invalid_argument(fmt::format("unknown solver '{}'{}; 'bench list solvers' shows all", name,
+                                          near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+}
+
+}  // namespace odobench
