@@ -50,9 +50,9 @@ struct RunRecord {
   std::string problem;
   std::string dataset;         // name of the set
   std::string dataset_sha256;  // of its set.json; empty without a set
-  std::string label;           // how tables call this row: "lm", "pso[variant=thesis]", "nominal", "published:lm"
-  std::string kind;            // "run" (a solver ran), "evaluation" (given parameters), "skipped" (cannot run)
-  std::string solver;          // registry name
+  std::string label;   // how tables call this row: "lm", "pso[variant=thesis]", "nominal", "published:lm"
+  std::string kind;    // "run" (a solver ran), "evaluation" (given parameters), "skipped" (cannot run)
+  std::string solver;  // registry name
   std::map<std::string, std::string> options;  // every option with the value in force
   std::string polish;                          // solver that polished the result, or ""
   std::uint64_t seed = 0;                      // the derived seed

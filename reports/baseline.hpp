@@ -1,0 +1,80 @@
+// Regression check: golden values of runs in a JSON file, compared with stated tolerances.
+//
+//   {"schema_version": 1,
+//    "tolerances": {"cost_relative": 1e-6, "error_m": 1e-6, "error_rad": 1e-6, "total": 6e-6,
+//    "evaluations_factor": 2}, "entries": [
+//      {"problem": "calibration", "dataset": "vitko2024", "label": "lm", "kind": "run", "cost": 98.11878293,
+//       "evaluations": 29,
+//       "totals": {"x": 0.06, "y": 0.06, "theta": 0.25, "total": 0.37},
+//       "errors": {"line_x": {"x": {"e_max": 0.008, "e_sr": 0.008, "sigma": 0.0002}, "y": {..}, "theta":
+//       {..}}, ..}, "tolerances": {"cost_relative": 0.01}}]}
+//
+// |found - expected| <= cost_relative |expected| for J; <= error_m, error_rad for the error cells of x, y and
+// theta;
+// <= total for the sums (table 42). found <= evaluations_factor * expected for evaluations, unchecked when
+// the factor is null or the entry has no "evaluations". "tolerances" of an entry override those of the file
+// one by one. null stands for a value that was not finite and is met only by such a value. Keys other than
+// these are errors.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/record.hpp"
+#include "reports/statistics.hpp"
+#include "reports/table.hpp"
+
+namespace odobench {
+
+inline constexpr int kBaselineSchemaVersion = 1;
+
+struct Tolerances {
+  double cost_relative = 1e-6;
+  double error_m = 1e-6;
+  double error_rad = 1e-6;
+  double total = 6e-6;  // metres and radians are mixed in the total, as in the thesis
+  std::optional<double> evaluations_factor;
+};
+
+struct BaselineEntry {
+  std::string problem, dataset, label, kind;
+  std::optional<double> cost;  // absent for skipped and failed runs
+  std::optional<std::int64_t> evaluations;
+  std::vector<TrajectoryErrors> errors;
+  std::optional<Totals> totals;
+  Tolerances tolerances;  // in force for this entry
+};
+
+struct Baseline {
+  std::string source;  // file it was read from, for messages; "" when made from records
+  Tolerances tolerances;
+  std::vector<BaselineEntry> entries;
+};
+
+// Throws std::runtime_error "file: /entries/3/errors/line_x/x/e_max: expected a number, found a string".
+Baseline read_baseline(const std::string& path);
+
+// One entry per label; of several runs with one label the median run by J, as in the tables.
+// Throws std::invalid_argument when there is no record or a tolerance is negative or not finite.
+Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& tolerances = {});
+
+// Text of the file, one error cell group per line so that a change shows as few changed lines; ends with a
+// newline.
+std::string to_json_text(const Baseline& baseline);
+
+struct BaselineReport {
+  bool passed = false;
+  // One row per cell that moved, per label or trajectory missing from the records, and per additional one;
+  // what was compared is in a note.
+  Table table;
+};
+
+// Fails on every cell outside its tolerance, on labels or trajectories that are missing, and on additional
+// trajectories. Additional labels are listed without failing.
+BaselineReport check_baseline(const Baseline& baseline, const std::vector<RunRecord>& records);
+
+}  // namespace odobench

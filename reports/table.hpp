@@ -1,0 +1,89 @@
+// A table as data, and its five renderings. A table knows nothing about what it shows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace odobench {
+
+enum class Align { Left, Right };
+
+// How a number is written for people; the machine formats (csv, json) always carry the full double.
+enum class Notation {
+  Fixed,        // precision = digits after the decimal point
+  Significant,  // precision = significant digits, exponent where shorter: 2.11e-09
+};
+
+// Empty, text, or a number with an optional difference in brackets and an optional mark: 118.125 (+5.625) U
+struct Cell {
+  std::string text;             // shown when there is no value; "" then means: nothing to show
+  std::optional<double> value;  // may be non-finite: "inf", "nan" (json: null)
+  int precision = 6;
+  Notation notation = Notation::Fixed;
+  std::optional<double> difference;  // to a reference; same notation, signed, in brackets
+  std::string mark;                  // short sign after the number, explained in a note
+
+  bool empty() const { return text.empty() && !value; }
+};
+
+Cell text_cell(std::string text);
+Cell fixed_cell(double value, int digits);
+Cell significant_cell(double value, int digits);
+Cell count_cell(double value);  // no digits after the point
+
+struct Column {
+  std::string id;     // stable key for machines: "e_max_x"; heads the csv column together with the unit
+  std::string name;   // for people: "e_x,max"
+  std::string unit;   // "m"; "" for none
+  std::string latex;  // heading in LaTeX, verbatim: "$e_{x,\\max}$"; "" means the escaped name
+  std::string group;  // neighbours of one group stay together when a console table is split
+  Align align = Align::Right;
+  std::string mark_name = "mark";  // what the marks mean: name of their csv column and json key
+};
+
+// The first column names the row; it is repeated when a wide table is split.
+struct Table {
+  std::string id;     // stable: "errors.line_x"
+  std::string title;  // one line
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;  // every row has columns.size() cells
+  std::vector<std::string> notes;
+};
+
+enum class Format { Console, Markdown, Csv, Json, Latex };
+
+// console, md, csv, json, latex. Throws std::invalid_argument with these names.
+Format parse_format(const std::string& name);
+std::string to_string(Format format);
+// Of a file that holds such a rendering, without the point: txt, md, csv, json, tex.
+std::string file_extension(Format format);
+
+struct RenderOptions {
+  int width = 100;  // console only: columns of the terminal, 0 for unlimited
+};
+
+// The tables one after the other; ends with a newline, "" for no tables (json: an empty list).
+// Throws std::invalid_argument naming table and row when a row has another number of cells than there are
+// columns.
+std::string render(const std::vector<Table>& tables, Format format, const RenderOptions& options = {});
+
+// The renderers behind it.
+//   console  aligned columns; text columns wrap, then the table is split into blocks of columns
+//   md       GitHub tables, a heading each
+//   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line
+//   `#note,text` per
+//            note; an empty line between tables. A column with differences (marks) is followed by a column
+//            for them.
+//   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id:
+//   cell},..],"notes":[..]}]};
+//            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than
+//            a value
+//   latex    booktabs; a comment names the packages
+std::string render_console(const std::vector<Table>& tables, int width);
+std::string render_markdown(const std::vector<Table>& tables);
+std::string render_csv(const std::vector<Table>& tables);
+std::string render_json(const std::vector<Table>& tables);
+std::string render_latex(const std::vector<Table>& tables);
+
+}  // namespace odobench
