@@ -1,0 +1,129 @@
+#include "problems/calibration/calibration_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "problems/calibration/structure.hpp"
+
+namespace odobench {
+
+struct CalibrationProblem::Structure : CalibrationStructure {
+  using CalibrationStructure::CalibrationStructure;
+};
+
+namespace {
+
+Vector nominal_values(const std::vector<ParameterInfo>& parameters) {
+  Vector z(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = parameters[static_cast<std::size_t>(i)].nominal;
+  return z;
+}
+
+void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recording>& recordings) {
+  if (parameters.size() != static_cast<std::size_t>(kCalibrationParameters))
+    throw std::invalid_argument(
+        fmt::format("calibration: {} parameters, expected the 12 of a1..a4, b1..b4, r1..r4", parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string expected = fmt::format("{}{}", "abr"[i / 4], i % 4 + 1);
+    if (parameters[i].name != expected)
+      throw std::invalid_argument(
+          fmt::format("calibration: parameter {} is '{}', expected '{}'", i + 1, parameters[i].name, expected));
+  }
+  validate(parameters);
+  for (std::size_t i = 0; i < 4; ++i)
+    if (parameters[i].lower <= 0 && parameters[i].upper >= 0 && parameters[i + 4].lower <= 0 && parameters[i + 4].upper >= 0)
+      throw std::invalid_argument(fmt::format("calibration: the box lets wheel {} stand at the origin (a = b = 0)", i + 1));
+  if (recordings.empty()) throw std::invalid_argument("calibration: no recordings, expected at least one");
+  for (const Recording& r : recordings)
+    if (r.size() < 2)
+      throw std::invalid_argument(fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
+}
+
+}  // namespace
+
+CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings)
+    : parameters_(std::move(parameters)), recordings_(std::move(recordings)) {
+  check(parameters_, recordings_);
+  structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel::available().front());
+}
+
+CalibrationProblem::~CalibrationProblem() = default;
+CalibrationProblem::CalibrationProblem(CalibrationProblem&&) noexcept = default;
+CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept = default;
+
+double CalibrationProblem::cost(const ConstVectorRef& z) const { return structure_->cost(z); }
+
+void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
+  structure_->batch_cost(candidates, costs);
+}
+
+void CalibrationProblem::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
+  structure_->normal_equations(z, out);
+}
+
+Eigen::Index CalibrationProblem::residual_count() const {
+  Eigen::Index count = 0;
+  for (const Recording& r : recordings_) count += 3 * (static_cast<Eigen::Index>(r.size()) - 1);
+  return count;
+}
+
+PoseTrack CalibrationProblem::integrate(std::size_t recording, const ConstVectorRef& z) const {
+  return direct::integrate(recordings_.at(recording), z);
+}
+
+void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
+  Eigen::Index row = 0;
+  for (const Recording& recording : recordings_) {
+    const PoseTrack q = direct::integrate(recording, z);
+    for (std::size_t k = 1; k < recording.size(); ++k) {
+      r[row++] = q.x[k] - recording.x[k];
+      r[row++] = q.y[k] - recording.y[k];
+      r[row++] = q.theta[k] - recording.theta[k];
+    }
+  }
+}
+
+void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const {
+  residuals(z, r);
+  const LinearMatrix chain = linear_jacobian(z);
+  Eigen::Index row = 0;
+  for (const Recording& recording : recordings_) {
+    const PoseTrack q = direct::integrate(recording, z);
+    LinearVector gx = LinearVector::Zero(), gy = LinearVector::Zero(), gt = LinearVector::Zero();
+    for (std::size_t k = 0; k + 1 < recording.size(); ++k, row += 3) {
+      const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+      gx -= (q.y[k + 1] - q.y[k]) * gt;
+      gy += (q.x[k + 1] - q.x[k]) * gt;
+      for (std::size_t i = 0; i < kWheelCount; ++i) {
+        const auto w = static_cast<Eigen::Index>(i);
+        const double turn = 0.25 * dt * recording.wheel_speed[i][k], d = recording.steering[i][k];
+        gx[w] += turn * std::cos(d + q.theta[k]);
+        gy[w] += turn * std::sin(d + q.theta[k]);
+        gt[4 + w] -= turn * std::cos(d);
+        gt[8 + w] += turn * std::sin(d);
+      }
+      j.row(row) = gx.transpose() * chain;
+      j.row(row + 1) = gy.transpose() * chain;
+      j.row(row + 2) = gt.transpose() * chain;
+    }
+  }
+}
+
+std::vector<MaxErrors> CalibrationProblem::max_errors(const ConstVectorRef& z) const {
+  std::vector<MaxErrors> list;
+  for (const Recording& recording : recordings_) {
+    const PoseTrack q = direct::integrate(recording, z);
+    MaxErrors e{recording.id, recording.trajectory, recording.repetition};
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      e.x = std::max(e.x, std::abs(q.x[k] - recording.x[k]));
+      e.y = std::max(e.y, std::abs(q.y[k] - recording.y[k]));
+      e.theta = std::max(e.theta, std::abs(q.theta[k] - recording.theta[k]));
+    }
+    list.push_back(std::move(e));
+  }
+  return list;
+}
+
+}  // namespace odobench

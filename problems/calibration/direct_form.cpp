@@ -1,0 +1,45 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "problems/calibration/calibration_problem.hpp"
+
+namespace odobench::direct {
+
+PoseTrack integrate(const Recording& recording, const ConstVectorRef& z) {
+  const auto a = z.segment(0, 4), b = z.segment(4, 4), r = z.segment(8, 4);
+  const std::size_t n = recording.size();
+  PoseTrack q;
+  q.x.assign(n, 0.0);
+  q.y.assign(n, 0.0);
+  q.theta.assign(n, recording.theta.at(0));
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    double vx = 0, vy = 0, omega = 0;
+    for (std::size_t i = 0; i < kWheelCount; ++i) {
+      const auto w = static_cast<Eigen::Index>(i);
+      const double d = recording.steering[i][k];
+      const double v = r[w] * recording.wheel_speed[i][k];
+      vx += std::cos(d + q.theta[k]) / 4 * v;
+      vy += std::sin(d + q.theta[k]) / 4 * v;
+      omega += (-b[w] * std::cos(d) + a[w] * std::sin(d)) / (4 * (a[w] * a[w] + b[w] * b[w])) * v;
+    }
+    const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+    q.x[k + 1] = q.x[k] + dt * vx;
+    q.y[k + 1] = q.y[k] + dt * vy;
+    q.theta[k + 1] = q.theta[k] + dt * omega;
+  }
+  return q;
+}
+
+double cost(std::span<const Recording> recordings, const ConstVectorRef& z) {
+  double sum = 0;
+  for (const Recording& recording : recordings) {
+    const PoseTrack q = integrate(recording, z);
+    for (std::size_t k = 1; k < recording.size(); ++k) {
+      const double ex = q.x[k] - recording.x[k], ey = q.y[k] - recording.y[k], et = q.theta[k] - recording.theta[k];
+      sum += ex * ex + ey * ey + et * et;
+    }
+  }
+  return sum;
+}
+
+}  // namespace odobench::direct

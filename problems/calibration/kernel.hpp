@@ -1,0 +1,60 @@
+// The innermost loops of the structured form, in several vector widths chosen at run time.
+//
+// A block holds `width` segments of one recording, each `steps` increments long, one segment per vector lane:
+//     data[(step * kStreams + stream) * width + lane]
+// with the streams C_1..C_4, S_1..S_4 (C_i = dt w_i cos(d_i) / 4, S_i = dt w_i sin(d_i) / 4, in rad) and the
+// reference position after the step relative to the segment's start, x and y [m].
+// Linear parameters s = (r_1..r_4, P_1..P_4, Q_1..Q_4), P_i = r_i b_i/(a_i^2+b_i^2), Q_i = r_i a_i/(a_i^2+b_i^2):
+//     u = sum r_i (C_i, S_i),   dtheta = sum -P_i C_i + Q_i S_i,   (dx, dy) = R(theta) u.
+// Inside a segment the heading is advanced by rotating (cos, sin) by dtheta; segments begin from exact prefix sums.
+// Everything is relative to the segment's start, so segments are independent of each other.
+#pragma once
+
+#include <span>
+
+namespace odobench::kernel {
+
+inline constexpr int kStreams = 10;
+inline constexpr int kLinear = 12;
+inline constexpr int kHeading = 8;                          // P_1..P_4, Q_1..Q_4
+inline constexpr int kTriangle = kLinear * (kLinear + 1) / 2;  // lower triangle, row by row
+inline constexpr int kMaxWidth = 8;
+// Largest |dtheta| of a step for which the rotation polynomial is exact to 1e-15; beyond it the `exact` form is used.
+inline constexpr double kMaxAngle = 0.3;
+
+struct Block {
+  const double* data;
+  long steps;
+};
+
+// Arrays indexed [lane] (or [entry][lane]); lanes >= width are not touched.
+struct CostSums {
+  double cos0[kMaxWidth], sin0[kMaxWidth];  // in: heading at the segment's start
+  double x[kMaxWidth], y[kMaxWidth];        // displacement over the segment
+  double ex[kMaxWidth], ey[kMaxWidth];      // sums of the errors e = position - reference
+  double squares[kMaxWidth];                // sum of ex^2 + ey^2
+};
+
+struct NormalSums {
+  CostSums cost;
+  double heading0[kHeading][kMaxWidth];  // in: dtheta/d(P, Q) at the segment's start
+  double gx[kLinear][kMaxWidth], gy[kLinear][kMaxWidth];          // derivative of the displacement over the segment
+  double sum_gx[kLinear][kMaxWidth], sum_gy[kLinear][kMaxWidth];  // sums over the samples
+  double jtr[kLinear][kMaxWidth];                                // sum of gx ex + gy ey
+  double jtj[kTriangle][kMaxWidth];                              // sum of gx gx' + gy gy'
+};
+
+struct Kernel {
+  const char* name;  // "avx512", "avx2", "baseline"
+  int width;         // lanes of a block
+  void (*cost)(const Block&, const double* s, bool exact, CostSums&);
+  void (*normal)(const Block&, const double* s, bool exact, NormalSums&);
+  // The same for blocks of width 1 (the last few steps of a recording).
+  void (*cost_tail)(const Block&, const double* s, bool exact, CostSums&);
+  void (*normal_tail)(const Block&, const double* s, bool exact, NormalSums&);
+};
+
+// Every kernel this processor can run, the widest first; never empty.
+std::span<const Kernel> available();
+
+}  // namespace odobench::kernel

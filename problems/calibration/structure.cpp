@@ -1,0 +1,242 @@
+#include "problems/calibration/structure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace odobench {
+namespace {
+
+using kernel::kHeading;
+using kernel::kLinear;
+using kernel::kStreams;
+
+// Steps of a segment: long enough to amortise its start, short enough for a block to stay in the second-level cache.
+constexpr long kSegmentSteps = 256;
+
+// (C_1..C_4, S_1..S_4) of increment k.
+HeadingVector increment(const Recording& recording, std::size_t k) {
+  const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+  HeadingVector v;
+  for (std::size_t i = 0; i < kWheelCount; ++i) {
+    const double turn = 0.25 * dt * recording.wheel_speed[i][k];
+    v[static_cast<Eigen::Index>(i)] = turn * std::cos(recording.steering[i][k]);
+    v[static_cast<Eigen::Index>(i + 4)] = turn * std::sin(recording.steering[i][k]);
+  }
+  return v;
+}
+
+// dtheta/d(P, Q) of an increment: (-C, S).
+HeadingVector heading_increment(const HeadingVector& cs) {
+  HeadingVector f = cs;
+  f.head<4>() = -f.head<4>();
+  return f;
+}
+
+}  // namespace
+
+LinearVector linear_parameters(const ConstVectorRef& z) {
+  LinearVector s;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const double a = z[i], b = z[4 + i], r = z[8 + i], d = a * a + b * b;
+    s[i] = r;
+    s[4 + i] = r * b / d;
+    s[8 + i] = r * a / d;
+  }
+  return s;
+}
+
+LinearMatrix linear_jacobian(const ConstVectorRef& z) {
+  LinearMatrix j = LinearMatrix::Zero();
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const double a = z[i], b = z[4 + i], r = z[8 + i], d = a * a + b * b;
+    j(i, 8 + i) = 1;
+    j(4 + i, i) = -2 * a * b * r / (d * d);
+    j(4 + i, 4 + i) = r * (a * a - b * b) / (d * d);
+    j(4 + i, 8 + i) = b / d;
+    j(8 + i, i) = r * (b * b - a * a) / (d * d);
+    j(8 + i, 4 + i) = -2 * a * b * r / (d * d);
+    j(8 + i, 8 + i) = a / d;
+  }
+  return j;
+}
+
+CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordings, const ConstVectorRef& nominal,
+                                           const kernel::Kernel& kernel)
+    : kernel_(kernel) {
+  heading_.origin = linear_parameters(nominal).tail<kHeading>();
+  heading_.a.setZero();
+  heading_.b.setZero();
+  for (const Recording& recording : recordings) {
+    plan_recording(recording);
+    add_heading(recording);
+  }
+}
+
+void CalibrationStructure::plan_recording(const Recording& recording) {
+  const long increments = static_cast<long>(recording.size()) - 1;
+  const int w = kernel_.width;
+  const long block_count = std::max(1L, increments / (w * kSegmentSteps));
+  const long steps = increments / (w * block_count);
+  RecordingPlan plan;
+  plan.theta0 = recording.theta[0];
+  long next = 0;
+  HeadingVector heading = HeadingVector::Zero();
+  const auto add_block = [&](int width, long length) {
+    BlockPlan block{width, length, data_.size(), plan.segments.size()};
+    data_.resize(data_.size() + static_cast<std::size_t>(length * kStreams * width));
+    for (int lane = 0; lane < width; ++lane) {
+      const auto first = static_cast<std::size_t>(next);
+      plan.segments.push_back({length, heading, recording.x[first], recording.y[first]});
+      for (long k = 0; k < length; ++k, ++next) {
+        const auto sample = static_cast<std::size_t>(next);
+        const HeadingVector cs = increment(recording, sample);
+        double* row = &data_[block.data + static_cast<std::size_t>(k * kStreams * width + lane)];
+        for (Eigen::Index j = 0; j < kHeading; ++j) row[j * width] = cs[j];
+        row[8 * width] = recording.x[sample + 1] - recording.x[first];
+        row[9 * width] = recording.y[sample + 1] - recording.y[first];
+        heading += heading_increment(cs);
+        largest_step_ = largest_step_.cwiseMax(cs.cwiseAbs());
+      }
+    }
+    plan.blocks.push_back(block);
+  };
+  if (steps > 0)
+    for (long b = 0; b < block_count; ++b) add_block(w, steps);
+  if (next < increments) add_block(1, increments - next);
+  plans_.push_back(std::move(plan));
+}
+
+void CalibrationStructure::add_heading(const Recording& recording) {
+  using Wide = Eigen::Matrix<long double, kHeading, 1>;
+  Eigen::Matrix<long double, kHeading, kHeading> a = decltype(a)::Zero();
+  Wide b = Wide::Zero(), f = Wide::Zero();
+  long double c = 0;
+  for (std::size_t k = 1; k < recording.size(); ++k) {
+    f += heading_increment(increment(recording, k - 1)).cast<long double>();
+    const long double e = static_cast<long double>(recording.theta[0]) - static_cast<long double>(recording.theta[k]) +
+                          f.dot(heading_.origin.cast<long double>());
+    a += f * f.transpose();
+    b += f * e;
+    c += e * e;
+  }
+  heading_.a += a.cast<double>();
+  heading_.b += b.cast<double>();
+  heading_.c += static_cast<double>(c);
+}
+
+bool CalibrationStructure::needs_exact_rotation(const LinearVector& s) const {
+  // Written so that NaN parameters take the exact form too.
+  return !(s.tail<kHeading>().cwiseAbs().dot(largest_step_) <= kernel::kMaxAngle);
+}
+
+double CalibrationStructure::heading_cost(const LinearVector& s) const {
+  const HeadingVector d = s.tail<kHeading>() - heading_.origin;
+  return d.dot(heading_.a * d) + 2.0 * heading_.b.dot(d) + heading_.c;
+}
+
+double CalibrationStructure::recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const {
+  double x = 0, y = 0, cost = 0;
+  kernel::CostSums sums;
+  for (const BlockPlan& block : plan.blocks) {
+    for (int lane = 0; lane < block.width; ++lane) {
+      const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
+      const double theta = plan.theta0 + segment.heading0.dot(s.tail<kHeading>());
+      sums.cos0[lane] = std::cos(theta);
+      sums.sin0[lane] = std::sin(theta);
+    }
+    (block.width == 1 ? kernel_.cost_tail : kernel_.cost)({&data_[block.data], block.steps}, s.data(), exact, sums);
+    for (int lane = 0; lane < block.width; ++lane) {
+      const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
+      // The error at the segment's start is added to every sample of it: sum (e + e0)^2 = sum e^2 + 2 e0 sum e + n e0^2.
+      const double ex0 = x - segment.x_ref, ey0 = y - segment.y_ref;
+      cost += sums.squares[lane] + 2 * (ex0 * sums.ex[lane] + ey0 * sums.ey[lane]) +
+              static_cast<double>(segment.steps) * (ex0 * ex0 + ey0 * ey0);
+      x += sums.x[lane];
+      y += sums.y[lane];
+    }
+  }
+  return cost;
+}
+
+double CalibrationStructure::cost(const ConstVectorRef& z) const {
+  const LinearVector s = linear_parameters(z);
+  const bool exact = needs_exact_rotation(s);
+  double sum = heading_cost(s);
+  for (const RecordingPlan& plan : plans_) sum += recording_cost(plan, s, exact);
+  return sum;
+}
+
+void CalibrationStructure::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
+  // Recording by recording, so that its blocks stay in the cache for all candidates. The order of the additions is
+  // that of cost(): a candidate's value is the same bits alone and in any batch.
+  std::vector<LinearVector> s;
+  std::vector<char> exact;
+  for (Eigen::Index k = 0; k < candidates.cols(); ++k) {
+    s.push_back(linear_parameters(candidates.col(k)));
+    exact.push_back(needs_exact_rotation(s.back()));
+    costs[k] = heading_cost(s.back());
+  }
+  for (const RecordingPlan& plan : plans_)
+    for (std::size_t k = 0; k < s.size(); ++k)
+      costs[static_cast<Eigen::Index>(k)] += recording_cost(plan, s[k], exact[k] != 0);
+}
+
+void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost,
+                                      LinearVector& jtr, LinearMatrix& jtj) const {
+  double x = 0, y = 0;
+  LinearVector gx0 = LinearVector::Zero(), gy0 = LinearVector::Zero();  // derivative of the position so far
+  kernel::NormalSums sums;
+  for (const BlockPlan& block : plan.blocks) {
+    for (int lane = 0; lane < block.width; ++lane) {
+      const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
+      const double theta = plan.theta0 + segment.heading0.dot(s.tail<kHeading>());
+      sums.cost.cos0[lane] = std::cos(theta);
+      sums.cost.sin0[lane] = std::sin(theta);
+      for (int j = 0; j < kHeading; ++j) sums.heading0[j][lane] = segment.heading0[j];
+    }
+    (block.width == 1 ? kernel_.normal_tail : kernel_.normal)({&data_[block.data], block.steps}, s.data(), exact, sums);
+    for (int lane = 0; lane < block.width; ++lane) {
+      const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
+      const auto n = static_cast<double>(segment.steps);
+      const double ex0 = x - segment.x_ref, ey0 = y - segment.y_ref;
+      const double ex = sums.cost.ex[lane], ey = sums.cost.ey[lane];
+      LinearVector sx, sy, gx, gy;
+      int entry = 0;
+      for (int i = 0; i < kLinear; ++i) {
+        sx[i] = sums.sum_gx[i][lane];
+        sy[i] = sums.sum_gy[i][lane];
+        gx[i] = sums.gx[i][lane];
+        gy[i] = sums.gy[i][lane];
+        jtr[i] += sums.jtr[i][lane];
+        for (int j = 0; j <= i; ++j, ++entry) jtj(i, j) += sums.jtj[entry][lane];
+      }
+      cost += sums.cost.squares[lane] + 2 * (ex0 * ex + ey0 * ey) + n * (ex0 * ex0 + ey0 * ey0);
+      jtr += sx * ex0 + sy * ey0 + gx0 * (ex + n * ex0) + gy0 * (ey + n * ey0);
+      const LinearMatrix cross = (sx + 0.5 * n * gx0) * gx0.transpose() + (sy + 0.5 * n * gy0) * gy0.transpose();
+      jtj.triangularView<Eigen::Lower>() += cross + cross.transpose();
+      x += sums.cost.x[lane];
+      y += sums.cost.y[lane];
+      gx0 += gx;
+      gy0 += gy;
+    }
+  }
+}
+
+void CalibrationStructure::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
+  const LinearVector s = linear_parameters(z);
+  const bool exact = needs_exact_rotation(s);
+  double cost = heading_cost(s);
+  LinearVector jtr = LinearVector::Zero();
+  LinearMatrix jtj = LinearMatrix::Zero();
+  for (const RecordingPlan& plan : plans_) add_normal(plan, s, exact, cost, jtr, jtj);
+  jtj.triangularView<Eigen::StrictlyUpper>() = jtj.transpose();
+  jtr.tail<kHeading>() += heading_.a * (s.tail<kHeading>() - heading_.origin) + heading_.b;
+  jtj.bottomRightCorner<kHeading, kHeading>() += heading_.a;
+  const LinearMatrix d = linear_jacobian(z);
+  out.cost = cost;
+  out.jtr = d.transpose() * jtr;
+  const LinearMatrix full = d.transpose() * jtj * d;
+  out.jtj = 0.5 * (full + full.transpose());
+}
+
+}  // namespace odobench
