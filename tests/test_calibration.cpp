@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "problems/calibration/calibration_problem.hpp"
+#include "problems/calibration/structure.hpp"
+#include "solvers/solve.hpp"
+#include "tests/support/shared_data.hpp"
+#include "tests/support/synthetic_recording.hpp"
+
+namespace odobench {
+namespace {
+
+using testing::nominal_robot;
+using testing::synthetic_recording;
+
+std::vector<Recording> some_recordings() {
+  // Long ones with several blocks, and lengths around the lane counts where blocks and tails begin and end.
+  std::vector<Recording> list{synthetic_recording(2400, 0.016, 1), synthetic_recording(777, 0.02, 2)};
+  for (int samples : {2, 3, 4, 5, 8, 9, 10, 16, 17, 18, 33}) list.push_back(synthetic_recording(samples, 0.05, samples));
+  return list;
+}
+
+Vector nominal_vector() { return Problem(CalibrationProblem(nominal_robot(), some_recordings())).start(); }
+
+Vector perturbed(int variant) {
+  Vector z = nominal_vector();
+  for (Eigen::Index i = 0; i < z.size(); ++i) z[i] *= 1.0 + 0.05 * std::sin(1.0 + 2.3 * static_cast<double>(i) + variant);
+  return z;
+}
+
+TEST(Calibration, EveryKernelAgreesWithTheDirectForm) {
+  const auto recordings = some_recordings();
+  for (const kernel::Kernel& k : kernel::available()) {
+    const CalibrationStructure structure(recordings, nominal_vector(), k);
+    for (int variant = 0; variant < 4; ++variant) {
+      const Vector z = perturbed(variant);
+      const double expected = direct::cost(recordings, z);
+      EXPECT_NEAR(structure.cost(z) / expected, 1.0, 1e-12) << k.name << " variant " << variant;
+    }
+  }
+}
+
+TEST(Calibration, StepsThatTurnFarUseTheExactRotation) {
+  // 2 s between samples: the heading turns by more than the rotation polynomial covers.
+  const std::vector<Recording> recordings{synthetic_recording(300, 2.0, 1)};
+  const Vector z = perturbed(1);
+  for (const kernel::Kernel& k : kernel::available()) {
+    const CalibrationStructure structure(recordings, nominal_vector(), k);
+    EXPECT_NEAR(structure.cost(z) / direct::cost(recordings, z), 1.0, 1e-11) << k.name;
+    NormalEquations e;
+    structure.normal_equations(z, e);
+    EXPECT_NEAR(e.cost / direct::cost(recordings, z), 1.0, 1e-11) << k.name;
+  }
+}
+
+TEST(Calibration, NormalEquationsAreThoseOfTheDenseJacobian) {
+  const auto recordings = some_recordings();
+  const CalibrationProblem problem(nominal_robot(), recordings);
+  const Vector z = perturbed(2);
+  Vector r(problem.residual_count());
+  Matrix j(problem.residual_count(), 12);
+  problem.residuals_and_jacobian(z, r, j);
+  const Matrix jtj = j.transpose() * j;
+  const Vector jtr = j.transpose() * r;
+  for (const kernel::Kernel& k : kernel::available()) {
+    NormalEquations e;
+    CalibrationStructure(recordings, nominal_vector(), k).normal_equations(z, e);
+    EXPECT_NEAR(e.cost / r.squaredNorm(), 1.0, 1e-12) << k.name;
+    for (Eigen::Index i = 0; i < 12; ++i) {
+      EXPECT_NEAR(e.jtr[i], jtr[i], 1e-11 * std::sqrt(jtj(i, i) * r.squaredNorm())) << k.name << " " << i;
+      for (Eigen::Index l = 0; l < 12; ++l)
+        EXPECT_NEAR(e.jtj(i, l), jtj(i, l), 1e-11 * std::sqrt(jtj(i, i) * jtj(l, l))) << k.name << " " << i << " " << l;
+    }
+  }
+}
+
+TEST(Calibration, JacobianMatchesCentralDifferences) {
+  const CalibrationProblem problem(nominal_robot(), {synthetic_recording(400, 0.03, 3)});
+  const Vector z = perturbed(3);
+  Vector r(problem.residual_count()), plus(r.size()), minus(r.size());
+  Matrix j(r.size(), 12);
+  problem.residuals_and_jacobian(z, r, j);
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    Vector shifted = z;
+    const double h = 1e-5 * std::abs(z[i]);
+    shifted[i] = z[i] + h;
+    problem.residuals(shifted, plus);
+    shifted[i] = z[i] - h;
+    problem.residuals(shifted, minus);
+    const double error = ((plus - minus) / (2 * h) - j.col(i)).norm();
+    EXPECT_LE(error, 1e-7 * j.col(i).norm()) << "column " << i;
+  }
+}
+
+TEST(Calibration, BatchHasTheBitsOfSingleEvaluations) {
+  const CalibrationProblem problem(nominal_robot(), some_recordings());
+  Matrix candidates(12, 13);
+  for (Eigen::Index k = 0; k < candidates.cols(); ++k) candidates.col(k) = perturbed(static_cast<int>(k));
+  Vector costs(13);
+  problem.batch_cost(candidates, costs);
+  for (Eigen::Index k = 0; k < candidates.cols(); ++k) EXPECT_EQ(costs[k], problem.cost(candidates.col(k))) << k;
+}
+
+TEST(Calibration, NotANumberComesOutAsNotANumber) {
+  const CalibrationProblem problem(nominal_robot(), some_recordings());
+  Vector z = perturbed(0);
+  z[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(problem.cost(z)));
+}
+
+TEST(Calibration, RefusesWhatIsNoCalibrationProblem) {
+  const auto message = [](std::vector<ParameterInfo> parameters, std::vector<Recording> recordings) -> std::string {
+    try {
+      const CalibrationProblem problem(std::move(parameters), std::move(recordings));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  auto swapped = nominal_robot();
+  std::swap(swapped[0], swapped[1]);
+  auto inverted = nominal_robot();
+  std::swap(inverted[5].lower, inverted[5].upper);
+  auto at_origin = nominal_robot();
+  at_origin[2].lower = at_origin[6].lower = -1;
+  at_origin[2].upper = at_origin[6].upper = 1;
+  EXPECT_EQ(message({}, some_recordings()), "calibration: 0 parameters, expected the 12 of a1..a4, b1..b4, r1..r4");
+  EXPECT_EQ(message(swapped, some_recordings()), "calibration: parameter 1 is 'a2', expected 'a1'");
+  EXPECT_NE(message(inverted, some_recordings()).find("'b2': lower"), std::string::npos);
+  EXPECT_NE(message(at_origin, some_recordings()).find("wheel 3 stand at the origin"), std::string::npos);
+  EXPECT_EQ(message(nominal_robot(), {}), "calibration: no recordings, expected at least one");
+  EXPECT_NE(message(nominal_robot(), {synthetic_recording(1, 0.1, 1)}).find("1 samples"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace odobench
