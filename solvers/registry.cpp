@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "solvers/cmaes.hpp"
 #include "solvers/levenberg_marquardt.hpp"
 
 namespace odobench {
@@ -13,6 +14,7 @@ const std::vector<SolverEntry>& solver_registry() {
   static const std::vector<SolverEntry> registry = [] {
     std::vector<SolverEntry> rows;
     rows.push_back(levenberg_marquardt_entry());
+    rows.push_back(cmaes_entry());
     return rows;
   }();
   return registry;

@@ -1,0 +1,143 @@
+#include "solvers/cmaes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "solvers/boundary_map.hpp"
+#include "solvers/cma_core.hpp"
+
+namespace odobench {
+namespace {
+
+struct DescentSetting {
+  Vector start;  // unit coordinates
+  double sigma = 0;
+  int population = 0;
+  int generations = 0;
+};
+
+struct DescentResult {
+  double best = std::numeric_limits<double>::infinity();
+  double first_median = std::numeric_limits<double>::infinity();
+  std::int64_t evaluations = 0;
+  std::string message;
+  bool converged = false;  // by one of its own tests, not by the generation limit
+};
+
+DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOptions& options) {
+  const BoundaryMap map(options.boundary);
+  CmaDescent descent(map.from_box(setting.start), setting.sigma, setting.population, options.active);
+  DescentResult result;
+  Vector costs(setting.population);
+  const std::int64_t before = run.evaluations();
+  for (int g = 0; g < setting.generations; ++g) {
+    const Matrix candidates = map.to_box(descent.sample(run.random()));
+    run.batch_cost(candidates, costs);
+    result.evaluations = run.evaluations() - before;
+    result.best = std::min(result.best, costs.minCoeff());
+    if (run.stop()) return result;
+    run.iteration();
+    if (g == 0) {
+      Vector sorted = costs;
+      std::sort(sorted.begin(), sorted.end());
+      result.first_median = sorted[setting.population / 2];
+    }
+    descent.update(costs);
+    result.message = descent.finished(options.cost_tolerance, options.step_tolerance);
+    if (!result.message.empty()) {
+      result.converged = true;
+      return result;
+    }
+  }
+  result.message = fmt::format("{} generations >= limit {}", setting.generations, setting.generations);
+  return result;
+}
+
+// The sequence of descents: populations, steps and starts of the two restart strategies.
+class Restarts {
+ public:
+  Restarts(const CmaesOptions& options, Eigen::Index m) : options_(options), m_(m) {
+    base_ = options.population > 0 ? options.population : 4 + static_cast<int>(3.0 * std::log(static_cast<double>(m)));
+    large_ = base_;
+  }
+  DescentSetting first(const Vector& start) const { return limited({start, options_.sigma, base_, 0}); }
+  DescentSetting next(Random& random) {
+    DescentSetting setting;
+    setting.start.resize(m_);
+    for (double& u : setting.start) u = random.uniform(-1.0, 1.0);
+    setting.sigma = options_.sigma;
+    small_ = options_.strategy == "bipop" && spent_small_ < spent_large_ && large_ > base_;
+    if (small_) {
+      const double u = random.uniform();
+      const double ratio = 0.5 * large_ / base_;
+      setting.population = static_cast<int>(base_ * std::pow(std::max(1.0, ratio), u * u));
+      setting.sigma *= std::pow(10.0, -2.0 * random.uniform());
+    } else {
+      large_ = std::min(large_, 1 << 20) * 2;
+      setting.population = large_;
+    }
+    return limited(setting);
+  }
+  void spent(std::int64_t evaluations) { (small_ ? spent_small_ : spent_large_) += evaluations; }
+
+ private:
+  DescentSetting limited(DescentSetting s) const {
+    const double m3 = static_cast<double>(m_) + 3.0;
+    s.generations = options_.generations > 0 ? options_.generations
+                                             : 100 + static_cast<int>(50.0 * m3 * m3 / std::sqrt(static_cast<double>(s.population)));
+    return s;
+  }
+  const CmaesOptions& options_;
+  Eigen::Index m_;
+  int base_ = 0, large_ = 0;
+  bool small_ = false;
+  std::int64_t spent_large_ = 0, spent_small_ = 0;
+};
+
+}  // namespace
+
+void CmaesOptions::bind(OptionBinder& binder) {
+  binder.integer("population", population, "samples per generation of the first descent, 0: 4 + 3 ln(parameters)", 0, 1 << 20);
+  binder.number("sigma", sigma, "first standard deviation, half-widths of the box", 1e-12, 10);
+  binder.flag("active", active, "negative weights for the worse half of the samples");
+  binder.choice("strategy", strategy, "how restarts choose their population", {"ipop", "bipop"});
+  binder.integer("restarts", restarts, "most restarts; ends earlier when a restart finds the same cost again", 0);
+  binder.integer("generations", generations, "limit per descent, 0: 100 + 50 (parameters + 3)^2 / sqrt(population)", 0);
+  binder.number("cost_tolerance", cost_tolerance, "a descent ends when recent costs differ by at most this times the cost", 0, 1);
+  binder.number("step_tolerance", step_tolerance, "a descent ends when all deviations are below this times the first", 0, 1);
+  binder.number("boundary", boundary, "width of the zone next to a bound in which the coordinates are bent", 1e-6, 1);
+}
+
+void CmaesOptions::validate() const {
+  if (population == 1) throw std::invalid_argument("solver 'cmaes': option population=1; expected 0 or >= 2");
+}
+
+std::string Cmaes::why_not(const Problem&) const { return {}; }
+
+Outcome Cmaes::minimise(Run& run) const {
+  Restarts restarts(options_, run.dimension());
+  double best = std::numeric_limits<double>::infinity();
+  for (int k = 0;; ++k) {
+    const DescentResult result = descend(run, k == 0 ? restarts.first(run.start()) : restarts.next(run.random()), options_);
+    if (run.stop()) return {};
+    restarts.spent(result.evaluations);
+    const double scale = std::max(std::abs(result.best), result.first_median - result.best);
+    const bool again = k > 0 && std::isfinite(best) && std::abs(result.best - best) <= 1e-9 * scale;
+    best = std::min(best, result.best);
+    if (best == 0 && result.converged && run.problem().has_residuals()) return {Termination::Converged, "cost 0: an exact fit"};
+    if (again)
+      return {Termination::Converged, fmt::format("restart {} ended at the same cost within 1e-9; {}", k, result.message)};
+    if (k == options_.restarts)
+      return {result.converged ? Termination::Converged : Termination::IterationLimit,
+              k == 0 ? result.message : fmt::format("{} restarts >= limit {}; {}", k, options_.restarts, result.message)};
+  }
+}
+
+SolverEntry cmaes_entry() {
+  return make_entry<Cmaes, CmaesOptions>("cmaes", "CMA-ES with bounds by a smooth map and restarts with growing populations", true);
+}
+
+}  // namespace odobench
