@@ -77,13 +77,16 @@ struct RunRecord {
   std::string time_utc;  // ISO 8601 start of the run
 };
 
+// Doubles keep every bit, except that JSON has no word for what is not finite: it is written as null and read
+// as not-a-number (an optional cost: as absent).
 nlohmann::json to_json(const RunRecord& record);
 // Throws std::runtime_error naming the field, what was found and what was expected.
 RunRecord record_from_json(const nlohmann::json& json);
 
 // One line, without a newline at its end.
 std::string to_json_line(const RunRecord& record);
-// Reads a .jsonl file; throws std::runtime_error "file:line: ...".
+// Reads a .jsonl file, empty lines are passed over; throws std::runtime_error "file:line:
+// /parameters/3/lower: expected a number, found a string". Fields that it does not know are ignored.
 std::vector<RunRecord> read_records(const std::string& path);
 
 }  // namespace odobench

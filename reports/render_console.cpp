@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <limits>
+
+#include "reports/cell_text.hpp"
+#include "reports/table.hpp"
+#include "reports/text_width.hpp"
+
+namespace odobench {
+namespace {
+
+constexpr int kGutter = 2;      // cells between columns
+constexpr int kNarrowest = 24;  // text columns are wrapped down to this width before a table is split
+
+// One column laid out: numbers stand under numbers and brackets under brackets.
+struct Layout {
+  std::size_t column = 0;
+  std::vector<CellText> cells;
+  int head = 0, tail = 0;  // widths
+  int width = 0;           // now
+  int narrowest = 0;
+  bool wraps = false;
+};
+
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text;
+}
+
+Layout lay_out(const Table& table, std::size_t column) {
+  const Column& spec = table.columns[column];
+  Layout out;
+  out.column = column;
+  out.wraps = spec.align == Align::Left;
+  for (const auto& row : table.rows) {
+    CellText text = cell_text(row[column]);
+    text.head = one_line(text.head);
+    text.tail = one_line(text.tail);
+    if (row[column].value) out.wraps = false;
+    out.head = std::max(out.head, display_width(text.head));
+    out.tail = std::max(out.tail, display_width(text.tail));
+    out.cells.push_back(std::move(text));
+  }
+  out.width = out.head + (out.tail > 0 ? 1 + out.tail : 0);
+  out.width =
+      std::max({out.width, display_width(spec.name), spec.unit.empty() ? 0 : display_width(spec.unit) + 2});
+  out.narrowest = out.wraps ? std::min(out.width, std::max(kNarrowest, display_width(spec.name))) : out.width;
+  return out;
+}
+
+int total_width(const std::vector<Layout>& columns, bool narrowest) {
+  int width = -kGutter;
+  for (const Layout& c : columns) width += kGutter + (narrowest ? c.narrowest : c.width);
+  return width;
+}
+
+// Takes from the widest column that may still give, until the block fits.
+void shrink(std::vector<Layout>& columns, int limit) {
+  for (int excess = total_width(columns, false) - limit; excess > 0; --excess) {
+    Layout* widest = nullptr;
+    for (Layout& c : columns)
+      if (c.width > c.narrowest && (widest == nullptr || c.width > widest->width)) widest = &c;
+    if (widest == nullptr) return;
+    --widest->width;
+  }
+}
+
+// Blocks of columns that fit, each beginning with the first column; a group is cut only when it alone is too
+// wide.
+std::vector<std::vector<Layout>> split(const Table& table, int limit) {
+  const Layout key = lay_out(table, 0);
+  std::vector<std::vector<Layout>> blocks{{key}};
+  for (std::size_t at = 1; at < table.columns.size();) {
+    std::size_t end = at + 1;
+    while (end < table.columns.size() && !table.columns[at].group.empty() &&
+           table.columns[end].group == table.columns[at].group)
+      ++end;
+    std::vector<Layout> group, extended = blocks.back();
+    for (; at < end; ++at) group.push_back(lay_out(table, at));
+    extended.insert(extended.end(), group.begin(), group.end());
+    if (total_width(extended, true) <= limit) {
+      blocks.back() = std::move(extended);
+      continue;
+    }
+    if (blocks.back().size() > 1) blocks.push_back({key});
+    for (Layout& column : group) {
+      blocks.back().push_back(column);
+      if (blocks.back().size() > 2 && total_width(blocks.back(), true) > limit) {
+        blocks.back().pop_back();
+        blocks.push_back({key, column});
+      }
+    }
+  }
+  return blocks;
+}
+
+void append_line(std::string& out, std::string line) {
+  line.erase(line.find_last_not_of(' ') + 1);
+  out += line + "\n";
+}
+
+std::string padded(const std::string& text, int width, Align align) {
+  return align == Align::Right ? pad_left(text, width) : pad_right(text, width);
+}
+
+void append_header(std::string& out, const Table& table, const std::vector<Layout>& block) {
+  std::string names, units;
+  bool any_unit = false;
+  for (const Layout& c : block) {
+    const Column& column = table.columns[c.column];
+    const std::string gutter = c.column == block.front().column ? "" : std::string(kGutter, ' ');
+    const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
+    any_unit |= !unit.empty();
+    names += gutter + padded(column.name, c.width, column.align);
+    units += gutter + padded(unit, c.width, column.align);
+  }
+  append_line(out, names);
+  if (any_unit) append_line(out, units);
+}
+
+void append_row(std::string& out, const Table& table, const std::vector<Layout>& block, std::size_t row) {
+  std::vector<std::vector<std::string>> lines;
+  std::size_t height = 1;
+  for (const Layout& c : block) {
+    const CellText& text = c.cells[row];
+    const Align align = table.columns[c.column].align;
+    if (c.wraps) {
+      lines.push_back(wrap_text(whole_text(text), c.width));
+    } else {
+      std::string line = padded(text.head, c.head, align);
+      if (c.tail > 0) line.append(1, ' ').append(pad_right(text.tail, c.tail));
+      lines.push_back({padded(line, c.width, align)});
+    }
+    height = std::max(height, lines.back().size());
+  }
+  for (std::size_t k = 0; k < height; ++k) {
+    std::string line;
+    for (std::size_t b = 0; b < block.size(); ++b) {
+      if (b > 0) line.append(kGutter, ' ');
+      line += pad_right(k < lines[b].size() ? lines[b][k] : "", block[b].width);
+    }
+    append_line(out, line);
+  }
+}
+
+std::string rule(int width) {
+  std::string line;
+  for (int k = 0; k < width; ++k) line += "─";
+  return line + "\n";
+}
+
+void append_table(std::string& out, const Table& table, int limit) {
+  for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
+  for (std::vector<Layout>& block : split(table, limit)) {
+    shrink(block, limit);
+    const std::string line = rule(total_width(block, false));
+    out += line;
+    append_header(out, table, block);
+    out += line;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) append_row(out, table, block, row);
+    out += line;
+  }
+  for (const std::string& note : table.notes)
+    for (const std::string& line : wrap_text(one_line(note), limit)) append_line(out, line);
+}
+
+}  // namespace
+
+std::string render_console(const std::vector<Table>& tables, int width) {
+  const int limit = width > 0 ? width : std::numeric_limits<int>::max() / 4;
+  std::string out;
+  for (const Table& table : tables) {
+    if (!out.empty()) out += "\n";
+    append_table(out, table, limit);
+  }
+  return out;
+}
+
+}  // namespace odobench

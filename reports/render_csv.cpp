@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "reports/table.hpp"
+
+namespace odobench {
+namespace {
+
+// RFC 4180: quotes around fields with separators, quotes or line breaks; quotes inside doubled.
+std::string quoted(const std::string& text) {
+  const bool plain = text.find_first_of(",\"\r\n") == std::string::npos &&
+                     (text.empty() || (text.front() != ' ' && text.back() != ' '));
+  if (plain) return text;
+  std::string out = "\"";
+  for (char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+// The shortest text that reads back as the same bits.
+std::string exact(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : "";
+}
+
+struct Extras {
+  bool difference = false, mark = false;
+};
+
+std::vector<Extras> extras_of(const Table& table) {
+  std::vector<Extras> extras(table.columns.size());
+  for (const auto& row : table.rows)
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      extras[c].difference |= row[c].difference.has_value();
+      extras[c].mark |= !row[c].mark.empty();
+    }
+  return extras;
+}
+
+std::string line_of(const std::vector<std::string>& fields) {
+  std::string line;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    if (k > 0) line += ',';
+    line += quoted(fields[k]);
+  }
+  return line + "\r\n";
+}
+
+std::vector<std::string> header(const Table& table, const std::vector<Extras>& extras) {
+  std::vector<std::string> fields;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const Column& column = table.columns[c];
+    const std::string unit = column.unit.empty() ? "" : " [" + column.unit + "]";
+    fields.push_back(column.id + unit);
+    if (extras[c].difference) fields.push_back(column.id + "_difference" + unit);
+    if (extras[c].mark) fields.push_back(column.id + "_" + column.mark_name);
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::string render_csv(const std::vector<Table>& tables) {
+  std::string out;
+  for (const Table& table : tables) {
+    if (!out.empty()) out += "\r\n";
+    const std::vector<Extras> extras = extras_of(table);
+    out += line_of({"#table", table.id, table.title});
+    out += line_of(header(table, extras));
+    for (const auto& row : table.rows) {
+      std::vector<std::string> fields;
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        fields.push_back(row[c].value ? exact(row[c].value) : row[c].text);
+        if (extras[c].difference) fields.push_back(exact(row[c].difference));
+        if (extras[c].mark) fields.push_back(row[c].mark);
+      }
+      out += line_of(fields);
+    }
+    for (const std::string& note : table.notes) out += line_of({"#note", note});
+  }
+  return out;
+}
+
+}  // namespace odobench

@@ -1,0 +1,80 @@
+#include "reports/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace odobench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Definition 7: position (N - 1) p between the order statistics.
+double quantile(const std::vector<double>& sorted, double p) {
+  const double position = static_cast<double>(sorted.size() - 1) * p;
+  const auto below = static_cast<std::size_t>(position);
+  if (below + 1 >= sorted.size()) return sorted.back();
+  const double fraction = position - static_cast<double>(below);
+  // Without the test, 0 * infinity or infinity - infinity would spoil the quantile.
+  if (fraction == 0 || sorted[below] == sorted[below + 1]) return sorted[below];
+  return sorted[below] + fraction * (sorted[below + 1] - sorted[below]);
+}
+
+bool any_nan(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+}
+
+}  // namespace
+
+ErrorStatistics error_statistics_of(const std::vector<double>& repetitions) {
+  if (repetitions.empty())
+    throw std::invalid_argument("error statistics need at least one repetition, got 0");
+  if (any_nan(repetitions)) return {kNaN, kNaN, kNaN};
+  const auto n = static_cast<double>(repetitions.size());
+  double sum = 0;
+  for (double e : repetitions) sum += e;
+  const double mean = sum / n;
+  double squares = 0;
+  for (double e : repetitions) squares += (e - mean) * (e - mean);
+  return {*std::max_element(repetitions.begin(), repetitions.end()), mean,
+          repetitions.size() < 2 ? kNaN : std::sqrt(squares / (n - 1))};
+}
+
+std::vector<TrajectoryErrors> error_statistics(const std::vector<RecordingError>& errors) {
+  std::vector<std::string> names;
+  std::vector<std::array<std::vector<double>, 3>> samples;
+  for (const RecordingError& error : errors) {
+    const auto found = std::find(names.begin(), names.end(), error.trajectory);
+    const auto index = static_cast<std::size_t>(found - names.begin());
+    if (found == names.end()) {
+      names.push_back(error.trajectory);
+      samples.emplace_back();
+    }
+    for (std::size_t v = 0; v < 3; ++v) samples[index][v].push_back(error.max_error[v]);
+  }
+  std::vector<TrajectoryErrors> result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    result.push_back({names[i], {}});
+    for (std::size_t v = 0; v < 3; ++v) result.back().variables[v] = error_statistics_of(samples[i][v]);
+  }
+  return result;
+}
+
+Totals error_totals(const std::vector<TrajectoryErrors>& errors) {
+  Totals totals;
+  for (const TrajectoryErrors& trajectory : errors)
+    for (std::size_t v = 0; v < 3; ++v) totals.sums[v] += trajectory.variables[v].mean;
+  totals.total = totals.sums[0] + totals.sums[1] + totals.sums[2];
+  return totals;
+}
+
+Spread spread(std::vector<double> values) {
+  if (values.empty()) throw std::invalid_argument("a spread needs at least one value, got 0");
+  if (any_nan(values)) return {values.size(), kNaN, kNaN, kNaN, kNaN, kNaN};
+  std::sort(values.begin(), values.end());
+  return {values.size(),         values.front(),         quantile(values, 0.25),
+          quantile(values, 0.5), quantile(values, 0.75), values.back()};
+}
+
+}  // namespace odobench
