@@ -1,0 +1,158 @@
+#include "datasets/json_node.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "datasets/file_io.hpp"
+
+namespace odobench {
+namespace {
+
+using nlohmann::json;
+
+// What was found, short enough for one line.
+std::string brief(const json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return fmt::format("an array of {}", value.size());
+  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+}
+
+std::string broken(const json::parse_error& e, std::string_view text, const std::string& file) {
+  const std::size_t read = std::min(e.byte > 0 ? e.byte - 1 : 0, text.size());
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(read), '\n');
+  // The library's sentence follows its own "[...] parse error at line L, column C: ".
+  std::string what = e.what();
+  const auto column = what.find("column ");
+  const auto sentence = column == std::string::npos ? column : what.find(": ", column);
+  if (sentence != std::string::npos) what = what.substr(sentence + 2);
+  std::replace(what.begin(), what.end(), '\n', ' ');
+  return fmt::format("{}:{}: broken JSON: {}", file, line, what);
+}
+
+// Called at every token: collects the keys of the objects being read.
+class DuplicateKeys {
+ public:
+  explicit DuplicateKeys(const std::string& file) : file_(file) {}
+  bool operator()(json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) open_.emplace_back();
+    if (event == json::parse_event_t::object_end) open_.pop_back();
+    if (event == json::parse_event_t::key && !open_.back().insert(parsed.get<std::string>()).second)
+      throw DataError(fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
+    return true;
+  }
+
+ private:
+  const std::string& file_;
+  std::vector<std::set<std::string>> open_;
+};
+
+}  // namespace
+
+struct JsonNode::Document {
+  std::string file;
+  json root;
+};
+
+JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value, std::string path)
+    : document_(std::move(document)), value_(value), path_(std::move(path)) {}
+
+JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& file) {
+  auto document = std::make_shared<Document>();
+  document->file = file.string();
+  try {
+    DuplicateKeys keys(document->file);
+    document->root = json::parse(text, [&keys](int, json::parse_event_t event, json& parsed) { return keys(event, parsed); });
+  } catch (const json::parse_error& e) {
+    throw DataError(broken(e, text, document->file));
+  } catch (const json::exception& e) {
+    throw DataError(fmt::format("{}: broken JSON: {}", document->file, e.what()));
+  }
+  const json* root = &document->root;
+  return {std::move(document), root, ""};
+}
+
+JsonNode JsonNode::read(const std::filesystem::path& file) { return parse(read_file(file), file); }
+
+void JsonNode::fail(const std::string& found, const std::string& expected) const {
+  throw DataError(fmt::format("{}: {}: found {}, expected {}", document_->file, path_.empty() ? "/" : path_, found, expected));
+}
+
+const std::string& JsonNode::file() const { return document_->file; }
+
+bool JsonNode::has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+
+JsonNode JsonNode::at(const std::string& key) const {
+  if (!value_->is_object()) fail(brief(*value_), "an object");
+  const auto member = value_->find(key);
+  if (member == value_->end()) fail(fmt::format("no key \"{}\"", key), "it");
+  return {document_, &*member, path_ + "/" + key};
+}
+
+void JsonNode::allow_only(std::initializer_list<std::string_view> allowed) const {
+  for (const std::string& key : keys())
+    if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+      fail(fmt::format("unknown key \"{}\"", key), fmt::format("one of {}", fmt::join(allowed, ", ")));
+}
+
+std::vector<std::string> JsonNode::keys() const {
+  if (!value_->is_object()) fail(brief(*value_), "an object");
+  std::vector<std::string> names;
+  for (const auto& item : value_->items()) names.push_back(item.key());
+  return names;
+}
+
+JsonNode JsonNode::element(std::size_t index) const {
+  return {document_, &(*value_)[index], fmt::format("{}/{}", path_, index)};
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+  if (!value_->is_array()) fail(brief(*value_), "an array");
+  std::vector<JsonNode> nodes;
+  for (std::size_t i = 0; i < value_->size(); ++i) nodes.push_back(element(i));
+  return nodes;
+}
+
+std::string JsonNode::text() const {
+  if (!value_->is_string()) fail(brief(*value_), "a text");
+  return value_->get<std::string>();
+}
+
+std::string JsonNode::text_or_empty(const std::string& key) const { return has(key) ? at(key).text() : std::string(); }
+
+double JsonNode::number() const {
+  if (!value_->is_number()) fail(brief(*value_), "a number");
+  return value_->get<double>();
+}
+
+std::int64_t JsonNode::integer() const {
+  const bool fits = !value_->is_number_unsigned() ||
+                    value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (!value_->is_number_integer() || !fits) fail(brief(*value_), "an integer");
+  return value_->get<std::int64_t>();
+}
+
+// Paths are built for the entry that is wrong only: an inline recording has thousands.
+std::vector<double> JsonNode::numbers() const {
+  if (!value_->is_array()) fail(brief(*value_), "an array of numbers");
+  std::vector<double> values;
+  values.reserve(value_->size());
+  for (std::size_t i = 0; i < value_->size(); ++i)
+    values.push_back((*value_)[i].is_number() ? (*value_)[i].get<double>() : element(i).number());
+  return values;
+}
+
+std::vector<std::int64_t> JsonNode::integers() const {
+  if (!value_->is_array()) fail(brief(*value_), "an array of integers");
+  std::vector<std::int64_t> values;
+  values.reserve(value_->size());
+  for (std::size_t i = 0; i < value_->size(); ++i) values.push_back(element(i).integer());
+  return values;
+}
+
+}  // namespace odobench
