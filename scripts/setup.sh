@@ -4,7 +4,8 @@
 #
 # usage: scripts/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, coverage; TARGET: default is everything
 #
-# ODOBENCH_SKIP_PACKAGES=1  do not look for packages (another system, or dependencies installed by other means)
+# ODOBENCH_SKIP_PACKAGES=1        do not look for packages (another system, or dependencies installed by other means)
+# ODOBENCH_EXTRA_PACKAGES="a b"   install these as well (CI: the tools of its checks)
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -16,7 +17,9 @@ exec 1>&2
 say() { printf 'setup: %s\n' "$*"; }
 fail() { say "error: $*"; exit 1; }
 
-listed_packages() { sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$root/scripts/packages.txt"; }
+listed_packages() {
+  { sed 's/#.*//' "$root/scripts/packages.txt" && echo "${ODOBENCH_EXTRA_PACKAGES:-}"; } | xargs -n 1
+}
 
 missing_packages() {
   local installed
