@@ -12,14 +12,15 @@ namespace odobench {
 
 inline constexpr std::size_t kValueColumns = 3 + 2 * kWheelCount;
 
-// Calls visit(name, unit, std::vector<double>&) for x, y, theta, steering_1..4, wheel_speed_1..4 (time_us is apart: it
-// holds integers).
+// Calls visit(name, unit, std::vector<double>&) for x, y, theta, steering_1..4, wheel_speed_1..4 (time_us is
+// apart: it holds integers).
 template <class R, class Visit>
 void for_each_value_column(R& recording, Visit visit) {
   visit(std::string("x"), "m", recording.x);
   visit(std::string("y"), "m", recording.y);
   visit(std::string("theta"), "rad", recording.theta);
-  for (std::size_t i = 0; i < kWheelCount; ++i) visit(fmt::format("steering_{}", i + 1), "rad", recording.steering[i]);
+  for (std::size_t i = 0; i < kWheelCount; ++i)
+    visit(fmt::format("steering_{}", i + 1), "rad", recording.steering[i]);
   for (std::size_t i = 0; i < kWheelCount; ++i)
     visit(fmt::format("wheel_speed_{}", i + 1), "rad/s", recording.wheel_speed[i]);
 }

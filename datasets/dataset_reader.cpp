@@ -18,10 +18,12 @@ namespace {
 
 void check_schema(const JsonNode& root) {
   const JsonNode schema = root.at("schema");
-  if (schema.text() != kDatasetSchema) schema.fail('"' + schema.text() + '"', fmt::format("\"{}\"", kDatasetSchema));
+  if (schema.text() != kDatasetSchema)
+    schema.fail('"' + schema.text() + '"', fmt::format("\"{}\"", kDatasetSchema));
   const JsonNode version = root.at("schema_version");
   if (version.integer() != kDatasetSchemaVersion)
-    version.fail(fmt::format("version {}", version.integer()), fmt::format("version {}", kDatasetSchemaVersion));
+    version.fail(fmt::format("version {}", version.integer()),
+                 fmt::format("version {}", kDatasetSchemaVersion));
   root.allow_only({"schema", "schema_version", "name", "description", "robot", "trajectories", "recordings",
                    "known_parameters", "provenance", "notes"});
 }
@@ -31,8 +33,8 @@ Robot read_robot(const JsonNode& node) {
   Robot robot{node.at("name").text(), node.at("kinematics").text(), {}};
   for (const JsonNode& p : node.at("parameters").elements()) {
     p.allow_only({"name", "unit", "nominal", "lower", "upper"});
-    robot.parameters.push_back({p.at("name").text(), p.at("unit").text(), p.at("nominal").number(), p.at("lower").number(),
-                                p.at("upper").number()});
+    robot.parameters.push_back({p.at("name").text(), p.at("unit").text(), p.at("nominal").number(),
+                                p.at("lower").number(), p.at("upper").number()});
   }
   return robot;
 }
@@ -48,7 +50,8 @@ NamedParameters read_known_parameters(const JsonNode& node, const Robot& robot) 
   NamedParameters known{node.at("name").text(), node.text_or_empty("description"), {}};
   const JsonNode values = node.at("values");
   for (const std::string& key : values.keys())
-    if (std::none_of(robot.parameters.begin(), robot.parameters.end(), [&](const auto& p) { return p.name == key; }))
+    if (std::none_of(robot.parameters.begin(), robot.parameters.end(),
+                     [&](const auto& p) { return p.name == key; }))
       values.fail(fmt::format("unknown key \"{}\"", key), "the names in /robot/parameters");
   for (const RobotParameter& p : robot.parameters) known.values.push_back(values.at(p.name).number());
   return known;
@@ -56,7 +59,8 @@ NamedParameters read_known_parameters(const JsonNode& node, const Robot& robot) 
 
 Provenance read_provenance(const JsonNode& node) {
   node.allow_only({"source", "licence", "made_by", "files"});
-  Provenance provenance{node.text_or_empty("source"), node.text_or_empty("licence"), node.text_or_empty("made_by"), {}};
+  Provenance provenance{
+      node.text_or_empty("source"), node.text_or_empty("licence"), node.text_or_empty("made_by"), {}};
   if (!node.has("files")) return provenance;
   for (const JsonNode& file : node.at("files").elements()) {
     file.allow_only({"path", "sha256"});
@@ -76,7 +80,8 @@ Recording read_recording_head(const JsonNode& node) {
     node.at("repetition").fail(fmt::format("{}", repetition), "1 or more");
   recording.repetition = static_cast<int>(repetition);
   if (node.has("columns") == node.has("file"))
-    node.fail(node.has("file") ? "both \"file\" and \"columns\"" : "neither \"file\" nor \"columns\"", "one of them");
+    node.fail(node.has("file") ? "both \"file\" and \"columns\"" : "neither \"file\" nor \"columns\"",
+              "one of them");
   return recording;
 }
 
@@ -90,8 +95,8 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
     ++names;
   });
   if (columns.keys().size() != names) {
-    columns.allow_only({"time_us", "x", "y", "theta", "steering_1", "steering_2", "steering_3", "steering_4", "wheel_speed_1",
-                        "wheel_speed_2", "wheel_speed_3", "wheel_speed_4"});
+    columns.allow_only({"time_us", "x", "y", "theta", "steering_1", "steering_2", "steering_3", "steering_4",
+                        "wheel_speed_1", "wheel_speed_2", "wheel_speed_3", "wheel_speed_4"});
   }
   if (const auto fault = find_fault(recording)) {
     const JsonNode column = columns.at(fault->column);
@@ -99,7 +104,8 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
                                 fault->sample ? fmt::format("/{}", *fault->sample) : "", fault->what));
   }
   if (node.has("samples") && node.at("samples").integer() != static_cast<std::int64_t>(recording.size()))
-    node.at("samples").fail(fmt::format("{}", node.at("samples").integer()), fmt::format("{} as in time_us", recording.size()));
+    node.at("samples").fail(fmt::format("{}", node.at("samples").integer()),
+                            fmt::format("{} as in time_us", recording.size()));
 }
 
 void read_recording_file(const JsonNode& node, const fs::path& folder, Recording& recording) {
@@ -128,7 +134,8 @@ Dataset load_dataset(const fs::path& set_json) {
   const std::vector<JsonNode> recordings = root.at("recordings").elements();
   for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r));
   if (root.has("known_parameters"))
-    for (const JsonNode& k : root.at("known_parameters").elements()) d.known_parameters.push_back(read_known_parameters(k, d.robot));
+    for (const JsonNode& k : root.at("known_parameters").elements())
+      d.known_parameters.push_back(read_known_parameters(k, d.robot));
   if (root.has("provenance")) d.provenance = read_provenance(root.at("provenance"));
   if (root.has("notes"))
     for (const JsonNode& n : root.at("notes").elements()) d.notes.push_back(n.text());

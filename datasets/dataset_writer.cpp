@@ -16,27 +16,31 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order in which people read them
 
-constexpr std::size_t kLongestLine = 160;
+constexpr std::size_t kLongestLine = 240;
 
+// Of values that hold no structured ones.
 std::string one_line(const Json& value) {
   if (!value.is_structured()) return value.dump();
   std::string text(1, value.is_object() ? '{' : '[');
   for (auto item = value.begin(); item != value.end(); ++item) {
     if (item != value.begin()) text += ", ";
     if (value.is_object()) text += Json(item.key()).dump() + ": ";
-    text += one_line(*item);
+    text += item->dump();
   }
   return text + (value.is_object() ? '}' : ']');
 }
 
-// A diff should show one parameter or one recording per line: what fits on a line stays there, columns always do.
+// A diff should show one parameter or one recording per line: what fits on a line stays there, columns always
+// do.
 std::string pretty(const Json& value, std::size_t indent) {
   const bool column = value.is_array() && !value.empty() && value.front().is_number();
   if (!value.is_structured() || column) return one_line(value);
-  const std::string line = one_line(value);
   bool flat = true;
   for (const Json& item : value) flat = flat && !item.is_structured();
-  if ((flat && line.size() <= kLongestLine) || value.empty()) return line;
+  if (flat) {
+    const std::string line = one_line(value);
+    if (line.size() <= kLongestLine) return line;
+  }
   std::string text(1, value.is_object() ? '{' : '[');
   const std::string margin(indent + 2, ' ');
   for (auto item = value.begin(); item != value.end(); ++item) {
@@ -51,7 +55,8 @@ std::string pretty(const Json& value, std::size_t indent) {
 Json robot_json(const Robot& robot) {
   Json parameters = Json::array();
   for (const RobotParameter& p : robot.parameters)
-    parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"nominal", p.nominal}, {"lower", p.lower}, {"upper", p.upper}});
+    parameters.push_back(
+        {{"name", p.name}, {"unit", p.unit}, {"nominal", p.nominal}, {"lower", p.lower}, {"upper", p.upper}});
   return {{"name", robot.name}, {"kinematics", robot.kinematics}, {"parameters", parameters}};
 }
 
@@ -59,7 +64,8 @@ Json known_parameters_json(const Dataset& d) {
   Json all = Json::array();
   for (const NamedParameters& known : d.known_parameters) {
     Json values = Json::object();
-    for (std::size_t i = 0; i < known.values.size(); ++i) values[d.robot.parameters[i].name] = known.values[i];
+    for (std::size_t i = 0; i < known.values.size(); ++i)
+      values[d.robot.parameters[i].name] = known.values[i];
     all.push_back({{"name", known.name}, {"description", known.description}, {"values", values}});
   }
   return all;
@@ -77,7 +83,8 @@ Json recording_head(const Recording& r) {
 
 Json inline_columns(const Recording& r) {
   Json columns = {{"time_us", r.time_us}};
-  for_each_value_column(r, [&](const std::string& name, const char*, const std::vector<double>& v) { columns[name] = v; });
+  for_each_value_column(
+      r, [&](const std::string& name, const char*, const std::vector<double>& v) { columns[name] = v; });
   return columns;
 }
 
@@ -85,8 +92,9 @@ void check(const Dataset& d, const std::string& file) {
   validate_dataset(d, file);
   for (std::size_t i = 0; i < d.recordings.size(); ++i)
     if (const auto fault = find_fault(d.recordings[i]))
-      throw DataError(fmt::format("{}: /recordings/{} ({}): {}{}: {}", file, i, d.recordings[i].id, fault->column,
-                                  fault->sample ? fmt::format(", sample {}", *fault->sample) : "", fault->what));
+      throw DataError(
+          fmt::format("{}: /recordings/{} ({}): {}{}: {}", file, i, d.recordings[i].id, fault->column,
+                      fault->sample ? fmt::format(", sample {}", *fault->sample) : "", fault->what));
 }
 
 }  // namespace
@@ -110,7 +118,8 @@ void save_dataset(const Dataset& d, const fs::path& set_json, bool inline_record
     recordings.push_back(std::move(entry));
   }
   Json trajectories = Json::array();
-  for (const Trajectory& t : d.trajectories) trajectories.push_back({{"name", t.name}, {"description", t.description}});
+  for (const Trajectory& t : d.trajectories)
+    trajectories.push_back({{"name", t.name}, {"description", t.description}});
   const Json root = {{"schema", kDatasetSchema},
                      {"schema_version", kDatasetSchemaVersion},
                      {"name", d.name},

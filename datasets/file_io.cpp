@@ -31,7 +31,9 @@ struct Descriptor {
 [[noreturn]] void fail(const fs::path& file, const char* what, const std::error_code& reason) {
   throw DataError(fmt::format("{}: {}: {}", file.string(), what, reason.message()));
 }
-std::error_code last_error() { return {errno, std::generic_category()}; }
+std::error_code last_error() {
+  return {errno, std::generic_category()};
+}
 
 void write_all(int fd, std::string_view bytes, const fs::path& target) {
   while (!bytes.empty()) {
@@ -59,7 +61,8 @@ std::string read_file(const fs::path& file) {
   const Descriptor d(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct ::stat status {};
   if (d.fd < 0 || ::fstat(d.fd, &status) != 0) fail(file, "cannot be read", last_error());
-  std::string bytes(static_cast<std::size_t>(status.st_size) + 1, '\0');  // one more: the end shows without growing
+  std::string bytes(static_cast<std::size_t>(status.st_size) + 1,
+                    '\0');  // one more: the end shows without growing
   std::size_t filled = 0;
   for (;;) {  // beyond the stated size too: pipes and files under /proc state none
     if (filled == bytes.size()) bytes.resize(2 * filled + 4096);
@@ -79,7 +82,9 @@ void write_file(const fs::path& file, std::string_view bytes) {
   transaction.commit();
 }
 
-FileTransaction::~FileTransaction() { roll_back(); }
+FileTransaction::~FileTransaction() {
+  roll_back();
+}
 
 void FileTransaction::create_parents(const fs::path& folder) {
   std::vector<fs::path> missing;
@@ -107,7 +112,8 @@ void FileTransaction::commit() {
   std::error_code e;
   for (Entry& entry : entries_) {
     const fs::file_status status = fs::status(entry.target, e);
-    if (fs::is_directory(status)) fail(entry.target, "cannot be written", std::make_error_code(std::errc::is_a_directory));
+    if (fs::is_directory(status))
+      fail(entry.target, "cannot be written", std::make_error_code(std::errc::is_a_directory));
     entry.replaces = fs::exists(status);
   }
   for (Entry& entry : entries_) {
@@ -125,7 +131,8 @@ void FileTransaction::roll_back() noexcept {
     if (!entry.renamed) fs::remove(entry.temporary, ignored);
     if (entry.renamed && !entry.replaces) fs::remove(entry.target, ignored);
   }
-  for (auto folder = created_folders_.rbegin(); folder != created_folders_.rend(); ++folder) fs::remove(*folder, ignored);
+  for (auto folder = created_folders_.rbegin(); folder != created_folders_.rend(); ++folder)
+    fs::remove(*folder, ignored);
 }
 
 }  // namespace odobench

@@ -13,13 +13,15 @@ namespace odobench {
 // The bytes of a file, as they are.
 std::string read_file(const std::filesystem::path& file);
 
-// Writes one file so that a reader sees the old content or the new, never a part (FileTransaction with one file).
+// Writes one file so that a reader sees the old content or the new, never a part (FileTransaction with one
+// file).
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
-// Several files that belong together. add() writes to a temporary name beside the target and creates missing parent
-// folders; commit() renames all of them, in the order added: add what the others refer to first. Whatever was not
-// committed is removed by the destructor, folders it created included; when a rename fails, the files renamed before it
-// are removed too, unless they replaced older ones. A crash of the machine may still lose data: nothing is synced.
+// Several files that belong together. add() writes to a temporary name beside the target and creates missing
+// parent folders; commit() renames all of them, in the order added: add what the others refer to first.
+// Whatever was not committed is removed by the destructor, folders it created included; when a rename fails,
+// the files renamed before it are removed too, unless they replaced older ones. A crash of the machine may
+// still lose data: nothing is synced.
 class FileTransaction {
  public:
   FileTransaction() = default;

@@ -43,7 +43,8 @@ class DuplicateKeys {
     if (event == json::parse_event_t::object_start) open_.emplace_back();
     if (event == json::parse_event_t::object_end) open_.pop_back();
     if (event == json::parse_event_t::key && !open_.back().insert(parsed.get<std::string>()).second)
-      throw DataError(fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
+      throw DataError(
+          fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
     return true;
   }
 
@@ -67,7 +68,8 @@ JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& fil
   document->file = file.string();
   try {
     DuplicateKeys keys(document->file);
-    document->root = json::parse(text, [&keys](int, json::parse_event_t event, json& parsed) { return keys(event, parsed); });
+    document->root = json::parse(
+        text, [&keys](int, json::parse_event_t event, json& parsed) { return keys(event, parsed); });
   } catch (const json::parse_error& e) {
     throw DataError(broken(e, text, document->file));
   } catch (const json::exception& e) {
@@ -77,15 +79,22 @@ JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& fil
   return {std::move(document), root, ""};
 }
 
-JsonNode JsonNode::read(const std::filesystem::path& file) { return parse(read_file(file), file); }
-
-void JsonNode::fail(const std::string& found, const std::string& expected) const {
-  throw DataError(fmt::format("{}: {}: found {}, expected {}", document_->file, path_.empty() ? "/" : path_, found, expected));
+JsonNode JsonNode::read(const std::filesystem::path& file) {
+  return parse(read_file(file), file);
 }
 
-const std::string& JsonNode::file() const { return document_->file; }
+void JsonNode::fail(const std::string& found, const std::string& expected) const {
+  throw DataError(fmt::format("{}: {}: found {}, expected {}", document_->file, path_.empty() ? "/" : path_,
+                              found, expected));
+}
 
-bool JsonNode::has(const std::string& key) const { return value_->is_object() && value_->contains(key); }
+const std::string& JsonNode::file() const {
+  return document_->file;
+}
+
+bool JsonNode::has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key);
+}
 
 JsonNode JsonNode::at(const std::string& key) const {
   if (!value_->is_object()) fail(brief(*value_), "an object");
@@ -123,7 +132,9 @@ std::string JsonNode::text() const {
   return value_->get<std::string>();
 }
 
-std::string JsonNode::text_or_empty(const std::string& key) const { return has(key) ? at(key).text() : std::string(); }
+std::string JsonNode::text_or_empty(const std::string& key) const {
+  return has(key) ? at(key).text() : std::string();
+}
 
 double JsonNode::number() const {
   if (!value_->is_number()) fail(brief(*value_), "a number");
@@ -131,8 +142,9 @@ double JsonNode::number() const {
 }
 
 std::int64_t JsonNode::integer() const {
-  const bool fits = !value_->is_number_unsigned() ||
-                    value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const bool fits =
+      !value_->is_number_unsigned() ||
+      value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (!value_->is_number_integer() || !fits) fail(brief(*value_), "an integer");
   return value_->get<std::int64_t>();
 }

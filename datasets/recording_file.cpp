@@ -42,14 +42,17 @@ void extract(std::string_view bytes, std::vector<T>& values) {
   if constexpr (std::endian::native == std::endian::big) reverse_bytes(values.data(), values.size());
 }
 
-// Ids and column names need no escapes: validate_dataset() restricts ids to letters, digits, '_', '-' and '.'.
+// Ids and column names need no escapes: validate_dataset() restricts ids to letters, digits, '_', '-' and
+// '.'.
 std::string header(const Recording& recording) {
-  std::string line = fmt::format(R"({{"format": "{}", "version": {}, "id": "{}", "samples": {}, "columns": [)", kFormat,
-                                 kRecordingFormatVersion, recording.id, recording.size());
+  std::string line =
+      fmt::format(R"({{"format": "{}", "version": {}, "id": "{}", "samples": {}, "columns": [)", kFormat,
+                  kRecordingFormatVersion, recording.id, recording.size());
   line += R"({"name": "time_us", "unit": "us", "type": "int64"})";
-  for_each_value_column(recording, [&](const std::string& name, const char* unit, const std::vector<double>&) {
-    line += fmt::format(R"(, {{"name": "{}", "unit": "{}", "type": "float64"}})", name, unit);
-  });
+  for_each_value_column(
+      recording, [&](const std::string& name, const char* unit, const std::vector<double>&) {
+        line += fmt::format(R"(, {{"name": "{}", "unit": "{}", "type": "float64"}})", name, unit);
+      });
   line += "]}";
   line.append(kAlignment - 1 - line.size() % kAlignment, ' ');
   return line + "\n";
@@ -72,27 +75,31 @@ void check_columns(const JsonNode& columns, const Recording& recording) {
     member("type", type);
   };
   check("time_us", "us", "int64");
-  for_each_value_column(recording,
-                        [&](const std::string& name, const char* unit, const std::vector<double>&) { check(name, unit, "float64"); });
+  for_each_value_column(recording, [&](const std::string& name, const char* unit,
+                                       const std::vector<double>&) { check(name, unit, "float64"); });
 }
 
 // Returns the length of the header line.
-std::size_t check_header(std::string_view bytes, const ExpectedRecording& expected, const Recording& recording) {
+std::size_t check_header(std::string_view bytes, const ExpectedRecording& expected,
+                         const Recording& recording) {
   const std::size_t newline = bytes.substr(0, kLongestHeader).find('\n');
   if (newline == std::string_view::npos)
-    throw DataError(fmt::format("{}: byte {}: found no end of the header line, expected one line of JSON", expected.file,
-                                std::min(bytes.size(), kLongestHeader)));
+    throw DataError(fmt::format("{}: byte {}: found no end of the header line, expected one line of JSON",
+                                expected.file, std::min(bytes.size(), kLongestHeader)));
   const JsonNode root = JsonNode::parse(bytes.substr(0, newline), expected.file);
   const JsonNode format = root.at("format");
   if (format.text() != kFormat) format.fail('"' + format.text() + '"', fmt::format("\"{}\"", kFormat));
   const JsonNode version = root.at("version");
   if (version.integer() != kRecordingFormatVersion)
-    version.fail(fmt::format("version {}", version.integer()), fmt::format("version {}", kRecordingFormatVersion));
+    version.fail(fmt::format("version {}", version.integer()),
+                 fmt::format("version {}", kRecordingFormatVersion));
   root.allow_only({"format", "version", "id", "samples", "columns"});
-  if (root.at("id").text() != recording.id) root.at("id").fail('"' + root.at("id").text() + '"', '"' + recording.id + '"');
+  if (root.at("id").text() != recording.id)
+    root.at("id").fail('"' + root.at("id").text() + '"', '"' + recording.id + '"');
   const JsonNode samples = root.at("samples");
   if (samples.integer() < 0 || static_cast<std::size_t>(samples.integer()) != expected.samples)
-    samples.fail(fmt::format("{} samples", samples.integer()), fmt::format("{} as in the set", expected.samples));
+    samples.fail(fmt::format("{} samples", samples.integer()),
+                 fmt::format("{} as in the set", expected.samples));
   check_columns(root.at("columns"), recording);
   return newline + 1;
 }
@@ -103,7 +110,8 @@ std::string encode_recording(const Recording& recording) {
   std::string bytes = header(recording);
   bytes.reserve(bytes.size() + (1 + kValueColumns) * kEntryBytes * recording.size());
   append(bytes, recording.time_us);
-  for_each_value_column(recording, [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
+  for_each_value_column(
+      recording, [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
   return bytes;
 }
 
@@ -113,11 +121,13 @@ void decode_recording(std::string_view bytes, const ExpectedRecording& expected,
   constexpr std::size_t row = (1 + kValueColumns) * kEntryBytes;
   const std::size_t body = bytes.size() - start;
   if (body % row != 0 || body / row != expected.samples)
-    throw DataError(fmt::format("{}: byte {}: found the end of the file after {} bytes of columns, expected {} samples of {} bytes",
-                                expected.file, bytes.size(), body, expected.samples, row));
+    throw DataError(fmt::format(
+        "{}: byte {}: found the end of the file after {} bytes of columns, expected {} samples of {} bytes",
+        expected.file, bytes.size(), body, expected.samples, row));
   const std::string sum = sha256(bytes);
   if (sum != expected.sha256)
-    throw DataError(fmt::format("{}: found SHA-256 {}, expected {} as in the set", expected.file, sum, expected.sha256));
+    throw DataError(
+        fmt::format("{}: found SHA-256 {}, expected {} as in the set", expected.file, sum, expected.sha256));
 
   const std::size_t column = expected.samples * kEntryBytes;
   std::size_t offset = start;

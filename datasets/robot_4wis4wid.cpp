@@ -12,7 +12,8 @@ Robot robot_4wis4wid() {
   Robot robot{"4wis4wid", "4wis4wid", {}};
   const auto add = [&robot](char letter, std::size_t wheel, double nominal) {
     const double x = nominal * 0.95, y = nominal * 1.05;
-    robot.parameters.push_back({fmt::format("{}{}", letter, wheel + 1), "m", nominal, std::min(x, y), std::max(x, y)});
+    robot.parameters.push_back(
+        {fmt::format("{}{}", letter, wheel + 1), "m", nominal, std::min(x, y), std::max(x, y)});
   };
   for (std::size_t i = 0; i < kWheelCount; ++i) add('a', i, a[i]);
   for (std::size_t i = 0; i < kWheelCount; ++i) add('b', i, b[i]);

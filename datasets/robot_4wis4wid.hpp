@@ -11,12 +11,12 @@ namespace odobench {
 inline constexpr double kHalfTrack = 0.1125;    // |a_i| = |b_i| nominal, m
 inline constexpr double kWheelRadius = 0.0254;  // r_i nominal, m
 
-// Parameters a1..a4, b1..b4, r1..r4 in metres: wheel i stands at (a_i, b_i), its radius is r_i. Bounds are 5 % to either
-// side, nominal * 0.95 and nominal * 1.05 (the other way round where nominal is negative).
+// Parameters a1..a4, b1..b4, r1..r4 in metres: wheel i stands at (a_i, b_i), its radius is r_i. Bounds are 5
+// % to either side, nominal * 0.95 and nominal * 1.05 (the other way round where nominal is negative).
 Robot robot_4wis4wid();
 
-// The six drives of the thesis in the order of its tables: line_x, line_y, circle_ccw, circle_cw, rotation_ccw,
-// rotation_cw.
+// The six drives of the thesis in the order of its tables: line_x, line_y, circle_ccw, circle_cw,
+// rotation_ccw, rotation_cw.
 std::vector<Trajectory> trajectories_4wis4wid();
 
 }  // namespace odobench

@@ -24,11 +24,14 @@ std::string sha256(std::string_view bytes) {
   return hex;
 }
 
-std::string sha256_of_file(const std::filesystem::path& file) { return sha256(read_file(file)); }
+std::string sha256_of_file(const std::filesystem::path& file) {
+  return sha256(read_file(file));
+}
 
 bool is_sha256(std::string_view text) {
-  return text.size() == 64 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+  return text.size() == 64 && std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+         });
 }
 
 }  // namespace odobench

@@ -26,7 +26,8 @@ class Validator {
     check_known_parameters();
     for (std::size_t i = 0; i < d_.provenance.files.size(); ++i)
       require(is_sha256(d_.provenance.files[i].sha256), fmt::format("/provenance/files/{}/sha256", i),
-              fmt::format("found \"{}\", expected 64 lower-case hexadecimal digits", d_.provenance.files[i].sha256));
+              fmt::format("found \"{}\", expected 64 lower-case hexadecimal digits",
+                          d_.provenance.files[i].sha256));
   }
 
  private:
@@ -35,7 +36,8 @@ class Validator {
   }
   void require_new(std::set<std::string>& seen, const std::string& name, const std::string& path) const {
     require(!name.empty(), path, "found an empty text, expected a name");
-    require(seen.insert(name).second, path, fmt::format("found \"{}\" a second time, expected every name once", name));
+    require(seen.insert(name).second, path,
+            fmt::format("found \"{}\" a second time, expected every name once", name));
   }
 
   void check_robot() const {
@@ -44,20 +46,26 @@ class Validator {
     const Robot known = robot_4wis4wid();
     require(robot.kinematics == known.kinematics, "/robot/kinematics",
             fmt::format("found \"{}\", expected \"{}\"", robot.kinematics, known.kinematics));
-    require(robot.parameters.size() == known.parameters.size(), "/robot/parameters",
-            fmt::format("found {} parameters, expected {}", robot.parameters.size(), known.parameters.size()));
+    require(
+        robot.parameters.size() == known.parameters.size(), "/robot/parameters",
+        fmt::format("found {} parameters, expected {}", robot.parameters.size(), known.parameters.size()));
     for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
       const RobotParameter& p = robot.parameters[i];
       const std::string path = fmt::format("/robot/parameters/{}", i);
       const RobotParameter& expected = known.parameters[i];
-      require(p.name == expected.name, path + "/name", fmt::format("found \"{}\", expected \"{}\"", p.name, expected.name));
-      require(p.unit == expected.unit, path + "/unit", fmt::format("found \"{}\", expected \"{}\"", p.unit, expected.unit));
+      require(p.name == expected.name, path + "/name",
+              fmt::format("found \"{}\", expected \"{}\"", p.name, expected.name));
+      require(p.unit == expected.unit, path + "/unit",
+              fmt::format("found \"{}\", expected \"{}\"", p.unit, expected.unit));
       require(std::isfinite(p.nominal) && std::isfinite(p.lower) && std::isfinite(p.upper), path,
-              fmt::format("found lower {}, nominal {}, upper {} of {}, expected finite numbers", p.lower, p.nominal, p.upper, p.name));
-      require(p.lower <= p.upper, path,
-              fmt::format("found lower {} > upper {} of {}, expected lower <= upper", p.lower, p.upper, p.name));
+              fmt::format("found lower {}, nominal {}, upper {} of {}, expected finite numbers", p.lower,
+                          p.nominal, p.upper, p.name));
+      require(
+          p.lower <= p.upper, path,
+          fmt::format("found lower {} > upper {} of {}, expected lower <= upper", p.lower, p.upper, p.name));
       require(p.lower <= p.nominal && p.nominal <= p.upper, path,
-              fmt::format("found nominal {} of {} outside [{}, {}], expected it inside", p.nominal, p.name, p.lower, p.upper));
+              fmt::format("found nominal {} of {} outside [{}, {}], expected it inside", p.nominal, p.name,
+                          p.lower, p.upper));
     }
   }
 
@@ -76,17 +84,22 @@ class Validator {
       const std::string path = fmt::format("/recordings/{}", i);
       require_new(ids, r.id, path + "/id");
       const auto plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+               c == '-' || c == '.';
       };
       require(std::all_of(r.id.begin(), r.id.end(), plain) && r.id[0] != '.', path + "/id",
-              fmt::format("found \"{}\", expected letters, digits, '_', '-' and '.', not beginning with '.'", r.id));
+              fmt::format("found \"{}\", expected letters, digits, '_', '-' and '.', not beginning with '.'",
+                          r.id));
       const bool known = std::any_of(d_.trajectories.begin(), d_.trajectories.end(),
                                      [&](const Trajectory& t) { return t.name == r.trajectory; });
       require(known, path + "/trajectory",
-              fmt::format("found \"{}\", expected the name of one of the {} trajectories", r.trajectory, d_.trajectories.size()));
-      require(r.repetition >= 1, path + "/repetition", fmt::format("found {}, expected 1 or more", r.repetition));
+              fmt::format("found \"{}\", expected the name of one of the {} trajectories", r.trajectory,
+                          d_.trajectories.size()));
+      require(r.repetition >= 1, path + "/repetition",
+              fmt::format("found {}, expected 1 or more", r.repetition));
       require(repetitions.insert({r.trajectory, r.repetition}).second, path + "/repetition",
-              fmt::format("found repetition {} of \"{}\" a second time, expected every one once", r.repetition, r.trajectory));
+              fmt::format("found repetition {} of \"{}\" a second time, expected every one once",
+                          r.repetition, r.trajectory));
     }
   }
 
@@ -110,6 +123,8 @@ class Validator {
 
 }  // namespace
 
-void validate_dataset(const Dataset& dataset, const std::string& file) { Validator(dataset, file).run(); }
+void validate_dataset(const Dataset& dataset, const std::string& file) {
+  Validator(dataset, file).run();
+}
 
 }  // namespace odobench

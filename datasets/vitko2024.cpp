@@ -1,0 +1,270 @@
+#include "datasets/vitko2024.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "datasets/file_io.hpp"
+#include "datasets/robot_4wis4wid.hpp"
+#include "datasets/sha256.hpp"
+#include "datasets/synchronise.hpp"
+#include "datasets/vitko2024_csv.hpp"
+
+namespace odobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kRecordings = 30;
+constexpr int kRepetitions = 5;
+constexpr std::size_t kDropped = 29;
+// How far the wheel signals may be extrapolated: more means that the two files do not belong together.
+constexpr std::int64_t kLongestExtrapolation_us = 1'000'000;
+
+// Sums by file name, and the line on which each stands.
+struct Sums {
+  struct Entry {
+    std::string sum;
+    std::size_t line;
+  };
+  fs::path file;
+  bool present = false;
+  std::map<std::string, Entry> entries;
+};
+
+// Lines "sum  name" or "sum *name", as sha256sum writes them.
+Sums read_sums(const fs::path& folder) {
+  Sums sums{folder / "SHA256SUMS", false, {}};
+  if (!fs::exists(sums.file)) return sums;
+  sums.present = true;
+  const std::string text = read_file(sums.file);
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string row = text.substr(at, end - at);
+    at = end + 1;
+    ++line;
+    if (row.empty()) continue;
+    if (row.size() < 67 || !is_sha256(row.substr(0, 64)) || row[64] != ' ' ||
+        (row[65] != ' ' && row[65] != '*'))
+      throw DataError(fmt::format("{}:{}: found \"{}\", expected \"<64 hexadecimal digits>  <file>\"",
+                                  sums.file.string(), line, row.substr(0, 80)));
+    sums.entries[row.substr(66)] = {row.substr(0, 64), line};
+  }
+  return sums;
+}
+
+// What became of one pair of files.
+struct Pair {
+  Recording recording;
+  SourceFile capture, wheels;
+  std::size_t moved_capture = 0, moved_wheels = 0;
+};
+
+class Importer {
+ public:
+  explicit Importer(const fs::path& folder)
+      : folder_(!fs::exists(folder / "abs_1.csv") && fs::exists(folder / "dataset" / "abs_1.csv")
+                    ? folder / "dataset"
+                    : folder),
+        sums_(read_sums(folder_)),
+        trajectories_(trajectories_4wis4wid()) {}
+
+  Pair import(int number) const {  // 1 to 30
+    Pair pair;
+    const std::string capture_file = file("abs", number), wheel_file = file("odom", number);
+    vitko2024::CaptureLog capture = vitko2024::parse_capture(load("abs", number, pair.capture), capture_file);
+    vitko2024::WheelLog wheels = vitko2024::parse_wheels(load("odom", number, pair.wheels), wheel_file);
+    require_rows(capture.time_us, kDropped + 2, capture_file);
+    require_rows(wheels.time_us, 2, wheel_file);
+    pair.moved_capture = increase(capture.time_us, capture_file);
+    pair.moved_wheels = increase(wheels.time_us, wheel_file);
+    require_overlap(capture, wheels, wheel_file);
+    unwrap(capture.yaw);
+
+    Recording& r = pair.recording;
+    r.trajectory = trajectories_[static_cast<std::size_t>((number - 1) / kRepetitions)].name;
+    r.repetition = 1 + (number - 1) % kRepetitions;
+    r.id = fmt::format("{}_{}", r.trajectory, r.repetition);
+    const auto kept = [](auto& values) {
+      values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kDropped));
+      return std::move(values);
+    };
+    const std::vector<std::int64_t> stamps = kept(capture.time_us);
+    r.x = kept(capture.x);
+    r.y = kept(capture.y);
+    r.theta = kept(capture.yaw);
+    for (std::size_t i = 0; i < kWheelCount; ++i) {
+      r.steering[i] = interpolate(wheels.time_us, wheels.steering[i], stamps);
+      r.wheel_speed[i] = interpolate(wheels.time_us, wheels.wheel_speed[i], stamps);
+    }
+    r.time_us = stamps;
+    for (std::int64_t& t : r.time_us) t -= stamps.front();
+    return pair;
+  }
+
+ private:
+  static std::string name(const char* kind, int number) { return fmt::format("{}_{}.csv", kind, number); }
+  std::string file(const char* kind, int number) const { return (folder_ / name(kind, number)).string(); }
+
+  std::string load(const char* kind, int number, SourceFile& source) const {
+    std::string bytes = read_file(folder_ / name(kind, number));
+    source = {"dataset/" + name(kind, number), sha256(bytes)};
+    if (!sums_.present) return bytes;
+    const auto entry = sums_.entries.find(name(kind, number));
+    if (entry == sums_.entries.end())
+      throw DataError(
+          fmt::format("{}: found no sum of {}, expected one", sums_.file.string(), name(kind, number)));
+    if (entry->second.sum != source.sha256)
+      throw DataError(fmt::format("{}: found SHA-256 {}, expected {} ({}:{})", file(kind, number),
+                                  source.sha256, entry->second.sum, sums_.file.string(), entry->second.line));
+    return bytes;
+  }
+
+  static void require_rows(const std::vector<std::int64_t>& stamps, std::size_t least,
+                           const std::string& file) {
+    if (stamps.size() < least)
+      throw DataError(fmt::format("{}:{}: found the end of the file after {} rows, expected at least {}",
+                                  file, vitko2024::line_of_row(stamps.size()), stamps.size(), least));
+  }
+
+  static std::size_t increase(std::vector<std::int64_t>& stamps, const std::string& file) {
+    const StampRepair repair = make_increasing(stamps);
+    if (repair.fault < stamps.size())
+      throw DataError(fmt::format(
+          "{}:{}: found a stamp {} us before the one above it, expected a later one (up to {} us are mended)",
+          file, vitko2024::line_of_row(repair.fault), stamps[repair.fault - 1] - stamps[repair.fault],
+          kLargestBackstep_us));
+    return repair.moved;
+  }
+
+  static void require_overlap(const vitko2024::CaptureLog& capture, const vitko2024::WheelLog& wheels,
+                              const std::string& file) {
+    const std::int64_t late = wheels.time_us.front() - capture.time_us.front();
+    const std::int64_t early = capture.time_us.back() - wheels.time_us.back();
+    if (late > kLongestExtrapolation_us)
+      throw DataError(
+          fmt::format("{}:{}: found a first stamp {} us after the motion capture's, expected at most {} us",
+                      file, vitko2024::line_of_row(0), late, kLongestExtrapolation_us));
+    if (early > kLongestExtrapolation_us)
+      throw DataError(fmt::format(
+          "{}:{}: found a last stamp {} us before the motion capture's, expected at most {} us", file,
+          vitko2024::line_of_row(wheels.time_us.size() - 1), early, kLongestExtrapolation_us));
+  }
+
+  fs::path folder_;
+  Sums sums_;
+  std::vector<Trajectory> trajectories_;
+};
+
+// Imports all pairs on several threads. Pairs are handed out in ascending order and begun ones are finished,
+// so that the error reported is that of the lowest number, whatever the threads do.
+std::vector<Pair> import_pairs(const Importer& importer, const ImportProgress& progress, int threads) {
+  std::vector<Pair> pairs(kRecordings);
+  std::vector<std::exception_ptr> errors(kRecordings);
+  std::exception_ptr interruption;
+  std::atomic<int> next{0};
+  std::atomic<bool> stop{false};
+  std::mutex progress_mutex;
+  int done = 0;
+  const auto work = [&] {
+    while (!stop) {
+      const int index = next++;
+      if (index >= kRecordings) return;
+      try {
+        pairs[static_cast<std::size_t>(index)] = importer.import(index + 1);
+      } catch (...) {
+        errors[static_cast<std::size_t>(index)] = std::current_exception();
+        stop = true;
+        continue;
+      }
+      if (!progress) continue;
+      const std::lock_guard lock(progress_mutex);
+      try {
+        if (!stop) progress(++done, kRecordings);
+      } catch (...) {
+        interruption = std::current_exception();
+        stop = true;
+      }
+    }
+  };
+  {
+    const unsigned machine = std::max(1u, std::thread::hardware_concurrency());
+    const int count = std::min(threads > 0 ? threads : static_cast<int>(machine), kRecordings);
+    std::vector<std::jthread> helpers;
+    for (int i = 1; i < count; ++i) helpers.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+  if (interruption) std::rethrow_exception(interruption);
+  return pairs;
+}
+
+// Parameter vectors that the thesis prints for these recordings, in mm as printed.
+std::vector<NamedParameters> published_parameters() {
+  std::vector<NamedParameters> sets = {
+      {"published:ip",
+       "interior point (MATLAB fmincon), thesis table 8",
+       {118.1, -118.1, -116.4, 112.4, 106.9, 118.1, -107.1, -106.9, 25.55, 26.67, 25.91, 25.11}},
+      {"published:lm",
+       "Levenberg-Marquardt, as printed in the thesis",
+       {114.7, -114.7, -113.2, 113.2, 114.2, 114.2, -113.9, -107.7, 25.83, 25.86, 25.86, 25.36}},
+      {"published:ga",
+       "genetic algorithm, thesis table 22; suspected of a misprint: b4 = -112.6 instead of -116.2 fits far "
+       "better",
+       {111.4, -114.0, -112.2, 107.4, 114.4, 114.7, -116.3, -116.2, 26.04, 25.93, 25.67, 25.46}},
+      {"published:pso",
+       "particle swarm, as printed in the thesis",
+       {107.9, -116.5, -117.5, 108.1, 114.4, 111.7, -116.7, -108.5, 26.11, 25.13, 26.61, 25.01}},
+  };
+  for (NamedParameters& set : sets)
+    for (double& value : set.values) value /= 1000;
+  return sets;
+}
+
+}  // namespace
+
+Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress, int threads) {
+  std::error_code unreadable;
+  if (!fs::is_directory(folder, unreadable))
+    throw DataError(fmt::format("{}: found no such folder, expected one with abs_1.csv ... odom_30.csv",
+                                folder.string()));
+  std::vector<Pair> pairs = import_pairs(Importer(folder), progress, threads);
+
+  Dataset d;
+  d.name = "vitko2024";
+  d.description =
+      "30 drives of a robot with four steered and driven wheels under motion capture, six trajectories, five "
+      "times each";
+  d.robot = robot_4wis4wid();
+  d.trajectories = trajectories_4wis4wid();
+  d.known_parameters = published_parameters();
+  d.provenance.source =
+      "J. Vitko, Calibration and localization of a mobile robot with four independent steering and four "
+      "independent driving "
+      "wheels, master's thesis, University of Zagreb, 2024; recordings: "
+      "https://github.com/JakVit/4WIS4WID_parameter_calibration, commit "
+      "862117d37862a74d15503cfe8810d5f61a00bbe6";
+  d.provenance.licence = "none stated";
+  d.provenance.made_by = "bench import vitko2024";
+  for (Pair& pair : pairs) {
+    const auto note = [&](std::size_t moved, const SourceFile& file) {
+      if (moved > 0)
+        d.notes.push_back(fmt::format("{} stamps moved to 1 us after their predecessor in recording {} ({})",
+                                      moved, pair.recording.id, file.path));
+    };
+    note(pair.moved_capture, pair.capture);
+    note(pair.moved_wheels, pair.wheels);
+    d.provenance.files.push_back(std::move(pair.capture));
+    d.provenance.files.push_back(std::move(pair.wheels));
+    d.recordings.push_back(std::move(pair.recording));
+  }
+  return d;
+}
+
+}  // namespace odobench
