@@ -59,7 +59,8 @@ struct Baseline {
 Baseline read_baseline(const std::string& path);
 
 // One entry per label; of several runs with one label the median run by J, as in the tables.
-// Throws std::invalid_argument when there is no record or a tolerance is negative or not finite.
+// Throws std::invalid_argument when there is no record, a tolerance is negative or not finite, or two results
+// have one name.
 Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& tolerances = {});
 
 // Text of the file, one error cell group per line so that a change shows as few changed lines; ends with a
@@ -74,7 +75,8 @@ struct BaselineReport {
 };
 
 // Fails on every cell outside its tolerance, on labels or trajectories that are missing, and on additional
-// trajectories. Additional labels are listed without failing.
+// trajectories. Additional labels are listed without failing. Throws std::invalid_argument when two results
+// of the records have one name.
 BaselineReport check_baseline(const Baseline& baseline, const std::vector<RunRecord>& records);
 
 }  // namespace odobench

@@ -151,14 +151,18 @@ std::string rule(int width) {
 
 void append_table(std::string& out, const Table& table, int limit) {
   for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
-  for (std::vector<Layout>& block : split(table, limit)) {
+  std::vector<std::vector<Layout>> blocks = split(table, limit);
+  std::vector<int> widths;
+  for (std::vector<Layout>& block : blocks) {
     shrink(block, limit);
-    const std::string line = rule(total_width(block, false));
-    out += line;
-    append_header(out, table, block);
-    out += line;
-    for (std::size_t row = 0; row < table.rows.size(); ++row) append_row(out, table, block, row);
-    out += line;
+    widths.push_back(total_width(block, false));
+  }
+  out += rule(widths.front());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    append_header(out, table, blocks[b]);
+    out += rule(widths[b]);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) append_row(out, table, blocks[b], row);
+    out += rule(b + 1 < blocks.size() ? std::max(widths[b], widths[b + 1]) : widths[b]);
   }
   for (const std::string& note : table.notes)
     for (const std::string& line : wrap_text(one_line(note), limit)) append_line(out, line);

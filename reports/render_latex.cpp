@@ -75,7 +75,7 @@ std::string cell_latex(const Cell& cell) {
   std::string out = number(number_text(*cell.value, cell.notation, cell.precision));
   if (cell.difference)
     out += fmt::format(" ({})", number(number_text(*cell.difference, cell.notation, cell.precision, true)));
-  if (!cell.mark.empty()) out += " " + escaped(cell.mark);
+  if (!cell.mark.empty()) out.append(1, ' ').append(escaped(cell.mark));
   return out;
 }
 

@@ -1,0 +1,32 @@
+// The single tables behind reports/calibration_tables.hpp. Each is empty when the comparison has nothing for
+// it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/comparison.hpp"
+#include "reports/table.hpp"
+
+namespace odobench {
+
+// Thesis tables 36-41: one per trajectory, rows = labels; e_max, e_sr, sigma, 6 decimals.
+std::vector<Table> error_tables(const Comparison& comparison);
+// Thesis tables 2-7 in one: rows = trajectories, for a comparison of a single label.
+std::optional<Table> error_overview(const Comparison& comparison);
+// Lower bound, nominal, upper bound, then the labels; mm with 3 decimals where the unit is m, else 6
+// significant digits. Empty without error tables: test functions have no parameters worth reading.
+std::optional<Table> parameter_table(const Comparison& comparison);
+// Thesis table 42. A label that lacks a trajectory has no sums.
+std::optional<Table> totals_table(const Comparison& comparison);
+
+Table solver_table(const Comparison& comparison);
+// Label and J only.
+Table cost_table(const Comparison& comparison);
+std::optional<Table> repeats_table(const Comparison& comparison);
+
+// "upper a1 b2; lower a2", "" when every parameter is inside the box.
+std::string active_bounds(const RunRecord& record);
+
+}  // namespace odobench
