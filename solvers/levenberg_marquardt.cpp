@@ -6,23 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "solvers/optimality.hpp"
+
 namespace odobench {
-namespace {
-
-// Projected gradient of J = r'r on the box: the components of -g that point out of it are dropped. With D = diag(J'J)
-// its size relative to sqrt(D J) is the cosine between residual and Jacobian column: free of units and of the cost's
-// scale.
-double optimality(const Vector& u, const NormalEquations& e) {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
-    const bool leaves = (u[i] <= -1.0 && e.jtr[i] > 0) || (u[i] >= 1.0 && e.jtr[i] < 0);
-    const double scale = std::sqrt(e.jtj(i, i) * e.cost);
-    if (!leaves && scale > 0) largest = std::max(largest, std::abs(e.jtr[i]) / scale);
-  }
-  return largest;
-}
-
-}  // namespace
 
 Vector solve_box_quadratic(const Matrix& h, const Vector& g, const Vector& lower, const Vector& upper) {
   const Eigen::Index m = g.size();
@@ -102,7 +88,7 @@ Outcome LevenbergMarquardt::minimise(Run& run) const {
   double growth = 2;
   for (int k = 0; k < options_.iterations; ++k) {
     if (e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
-    const double projected = optimality(u, e);
+    const double projected = projected_cosine(u, e);
     if (projected <= options_.gradient_tolerance)
       return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative)", projected, options_.gradient_tolerance)};
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "solvers/cmaes.hpp"
+#include "solvers/ceres_solver.hpp"
+#include "solvers/interior_point.hpp"
 #include "solvers/levenberg_marquardt.hpp"
 
 namespace odobench {
@@ -14,6 +16,8 @@ const std::vector<SolverEntry>& solver_registry() {
   static const std::vector<SolverEntry> registry = [] {
     std::vector<SolverEntry> rows;
     rows.push_back(levenberg_marquardt_entry());
+    rows.push_back(ceres_entry());
+    rows.push_back(interior_point_entry());
     rows.push_back(cmaes_entry());
     return rows;
   }();

@@ -1,0 +1,311 @@
+#include "solvers/ceres_solver.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "solvers/levenberg_marquardt.hpp"
+#include "solvers/optimality.hpp"
+
+namespace odobench {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Ceres writes warnings about rejected steps to the standard error through glog, whatever its own logging options
+// say. glog has only a process-wide switch; nothing but Ceres uses it here.
+void silence_glog() {
+  static std::once_flag once;
+  std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
+}
+
+// A bounded Gauss-Newton step that would gain less than this part of the cost is none; a cost below the second number
+// times its start is an exact fit, where only rounding is left to lower.
+constexpr double kNoGain = 1e-12;
+constexpr double kExactFit = 1e-20;
+
+// What the cost function shares with the iteration callback and the outer loop: the point, which of its coordinates
+// are free, the derivatives last evaluated and where.
+struct Workspace {
+  Run& run;
+  bool full = false;
+  double scale = 1;  // residuals are multiplied with it, so that Ceres' absolute thresholds see a cost of about 1
+  Vector u;
+  std::vector<Eigen::Index> free;
+  NormalEquations e;
+  Vector e_at;
+  std::exception_ptr error;
+
+  Vector point(const double* x) const {
+    Vector p = u;
+    for (std::size_t k = 0; k < free.size(); ++k) p[free[k]] = x[k];
+    return p;
+  }
+  bool has_derivatives_at(const Vector& p) const { return e_at.size() == p.size() && (e_at.array() == p.array()).all(); }
+};
+
+// Sum of squares for Ceres on the free coordinates. Where only the cost is asked for, one residual carries it all:
+// Ceres then looks at nothing but the norm.
+class Residuals final : public ceres::CostFunction {
+ public:
+  explicit Residuals(Workspace& work) : work_(work) {
+    const Eigen::Index rows = work.full ? work.run.problem().residual_count() : work.run.dimension() + 1;
+    set_num_residuals(static_cast<int>(rows));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(work.free.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    try {
+      return evaluate(work_.point(parameters[0]), residuals, jacobians == nullptr ? nullptr : jacobians[0]);
+    } catch (...) {  // not through Ceres' frames; the outer loop throws it on
+      work_.error = std::current_exception();
+      return false;
+    }
+  }
+
+ private:
+  bool evaluate(const Vector& u, double* residuals, double* jacobian) const {
+    Eigen::Map<Vector> out(residuals, num_residuals());
+    if (jacobian == nullptr) {
+      const double cost = work_.has_derivatives_at(u) ? work_.e.cost : work_.run.cost(u);
+      if (!std::isfinite(cost) || work_.run.stop()) return false;
+      out.setZero();
+      out[0] = work_.scale * std::sqrt(cost);
+      return true;
+    }
+    Matrix j;
+    Vector r;
+    if (work_.full) {
+      j.resize(num_residuals(), u.size());
+      r.resize(num_residuals());
+      const double cost = work_.run.residuals_and_jacobian(u, r, j);
+      if (!std::isfinite(cost)) return false;
+      work_.e = {cost, j.transpose() * r, j.transpose() * j};
+    } else {
+      if (!work_.has_derivatives_at(u)) work_.run.normal_equations(u, work_.e);
+      if (!std::isfinite(work_.e.cost)) return false;
+      compress_residuals(work_.e, j, r);
+    }
+    work_.e_at = u;
+    out = work_.scale * r;
+    const auto columns = static_cast<Eigen::Index>(work_.free.size());
+    Eigen::Map<RowMajor>(jacobian, num_residuals(), columns) = work_.scale * j(Eigen::all, work_.free);
+    return true;
+  }
+
+  Workspace& work_;
+};
+
+// Ends a round when the driver says stop, when the KKT conditions hold, or when a free coordinate has arrived at a
+// bound that should hold it: from there on Ceres' projected steps only creep.
+class RoundControl final : public ceres::IterationCallback {
+ public:
+  RoundControl(Workspace& work, const std::vector<double>& x, const CeresOptions& options)
+      : work_(work), x_(x), options_(options) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (work_.error || work_.run.stop()) return ceres::SOLVER_ABORT;
+    if (summary.iteration > 0) {
+      work_.run.iteration();
+      ++iterations_;
+    }
+    const Vector u = work_.point(x_.data());
+    if (!summary.step_is_successful || !work_.has_derivatives_at(u)) return ceres::SOLVER_CONTINUE;
+    if (projected_cosine(u, work_.e) <= options_.gradient_tolerance) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (!options_.active_set) return ceres::SOLVER_CONTINUE;
+    for (Eigen::Index i : work_.free) arrived_ = arrived_ || held_by_bound(u[i], work_.e.jtr[i]);
+    return arrived_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  bool arrived() const { return arrived_; }
+  int iterations() const { return iterations_; }
+
+ private:
+  Workspace& work_;
+  const std::vector<double>& x_;
+  const CeresOptions& options_;
+  bool arrived_ = false;
+  int iterations_ = 0;
+};
+
+struct Round {
+  bool arrived = false;  // ended early at a bound
+  int iterations = 0;
+  std::string message;
+};
+
+// One call of Ceres on the free coordinates of work.u, which receives the result.
+Round solve_free(Workspace& work, const CeresOptions& options, int iterations) {
+  std::vector<double> x;
+  for (Eigen::Index i : work.free) x.push_back(work.u[i]);
+  Residuals residuals(work);
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  problem.AddResidualBlock(&residuals, nullptr, x.data());
+  for (int k = 0; k < static_cast<int>(x.size()); ++k) {
+    problem.SetParameterLowerBound(x.data(), k, -1.0);
+    problem.SetParameterUpperBound(x.data(), k, 1.0);
+  }
+  RoundControl control(work, x, options);
+  ceres::Solver::Options settings;
+  settings.trust_region_strategy_type = options.strategy == "lm" ? ceres::LEVENBERG_MARQUARDT : ceres::DOGLEG;
+  settings.linear_solver_type = ceres::DENSE_QR;
+  settings.dense_linear_algebra_library_type = ceres::EIGEN;
+  settings.initial_trust_region_radius = options.radius;
+  settings.max_num_iterations = iterations;
+  settings.function_tolerance = options.cost_tolerance;
+  settings.gradient_tolerance = 0;  // absolute in Ceres; RoundControl has one that does not depend on scale
+  settings.parameter_tolerance = 0;
+  settings.num_threads = 1;
+  settings.logging_type = ceres::SILENT;
+  settings.minimizer_progress_to_stdout = false;
+  settings.update_state_every_iteration = true;
+  settings.callbacks.push_back(&control);
+  ceres::Solver::Summary summary;
+  ceres::Solve(settings, &problem, &summary);
+  if (work.error) std::rethrow_exception(work.error);
+  work.u = work.point(x.data());  // the last accepted point, also when Ceres gave up
+  return {control.arrived(), control.iterations(), summary.message};
+}
+
+// Adds the coordinates that their bounds hold; `release` first frees all.
+void update_free(Workspace& work, bool release) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < work.u.size(); ++i) {
+    const bool candidate = release || std::find(work.free.begin(), work.free.end(), i) != work.free.end();
+    if (candidate && !held_by_bound(work.u[i], work.e.jtr[i])) free.push_back(i);
+  }
+  work.free = std::move(free);
+}
+
+// Relative decrease of the Gauss-Newton model over the whole box: what a perfect bounded step would still gain.
+double predicted_decrease(const Vector& u, const NormalEquations& e) {
+  const Eigen::Index m = u.size();
+  Matrix h = e.jtj;
+  h.diagonal() += Vector::Constant(m, 1e-15 * std::max(h.diagonal().maxCoeff(), std::numeric_limits<double>::min()));
+  const Vector d = solve_box_quadratic(h, e.jtr, Vector::Constant(m, -1.0) - u, Vector::Constant(m, 1.0) - u);
+  return -(2.0 * e.jtr.dot(d) + d.dot(e.jtj * d)) / e.cost;
+}
+
+// Evaluates the derivatives at work.u unless they are there already; false when the driver says stop.
+bool refresh(Workspace& work) {
+  if (!work.has_derivatives_at(work.u)) {
+    work.run.normal_equations(work.u, work.e);
+    work.e_at = work.u;
+  }
+  return !work.run.stop();
+}
+
+Outcome converged(double cosine, const CeresOptions& options, int round) {
+  return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative) in round {}", cosine,
+                                              options.gradient_tolerance, round)};
+}
+
+// A round ended without meeting the gradient tolerance: is there anything left to gain?
+Outcome no_progress(const Workspace& work, const std::string& how, double cosine) {
+  const double relative = work.e.cost * work.scale * work.scale;
+  if (relative <= kExactFit)
+    return {Termination::Converged, fmt::format("cost {:.2g} <= {:.2g} times its start: an exact fit", work.e.cost, kExactFit)};
+  const double gain = predicted_decrease(work.u, work.e);
+  return {gain <= kNoGain ? Termination::Converged : Termination::Stalled,
+          fmt::format("{}; a bounded step would gain {:.2g} of the cost, projected gradient {:.2g}", how, gain, cosine)};
+}
+
+// Ceres as it comes.
+Outcome single_round(Workspace& work, const CeresOptions& options) {
+  for (Eigen::Index i = 0; i < work.u.size(); ++i) work.free.push_back(i);
+  const Round result = solve_free(work, options, options.iterations);
+  if (work.run.stop() || !refresh(work)) return {};
+  const double cosine = projected_cosine(work.u, work.e);
+  if (cosine <= options.gradient_tolerance) return converged(cosine, options, 1);
+  if (result.iterations >= options.iterations)
+    return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", result.iterations, options.iterations)};
+  return no_progress(work, "Ceres says: " + result.message, cosine);
+}
+
+Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
+  int left = options.iterations;
+  bool release = true;
+  double last_cost = std::numeric_limits<double>::infinity();
+  for (int round = 1;; ++round) {
+    if (work.e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
+    const double cosine = projected_cosine(work.u, work.e);
+    if (cosine <= options.gradient_tolerance) return converged(cosine, options, round);
+    const auto previous = work.free;
+    update_free(work, release);
+    if (release && previous == work.free && !(last_cost - work.e.cost > options.cost_tolerance * work.e.cost))
+      return no_progress(work, fmt::format("round {} gained nothing", round - 1), cosine);
+    if (left <= 0)
+      return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", options.iterations, options.iterations)};
+    last_cost = work.e.cost;
+    if (work.free.empty()) {  // everything is held, but not every multiplier has its sign
+      release = true;
+      continue;
+    }
+    const Round result = solve_free(work, options, left);
+    if (work.run.stop() || !refresh(work)) return {};
+    left -= std::max(1, result.iterations);
+    release = !result.arrived;
+  }
+}
+
+}  // namespace
+
+void compress_residuals(const NormalEquations& e, Matrix& jacobian, Vector& residuals) {
+  const Eigen::Index m = e.jtr.size();
+  Matrix gram(m + 1, m + 1);
+  gram << e.jtj, e.jtr, e.jtr.transpose(), e.cost;
+  // A unit diagonal first: the factor then does not depend on units.
+  const Vector size = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Vector inverse = (size.array() > 0).select(1.0 / size.array(), 0.0);
+  gram = inverse.asDiagonal() * gram * inverse.asDiagonal();
+  const Eigen::LDLT<Matrix> ldlt(gram);
+  const Vector root = ldlt.vectorD().cwiseMax(0.0).cwiseSqrt();
+  // A = P'L D L'P. Eigen applies transpositions from the right in the opposite order, hence from the left.
+  const Matrix lower = Matrix(ldlt.matrixL()) * root.asDiagonal();
+  const Matrix permuted = ldlt.transpositionsP().transpose() * lower;
+  const Matrix factor = permuted.transpose() * size.asDiagonal();
+  jacobian = factor.leftCols(m);
+  residuals = factor.col(m);
+}
+
+void CeresOptions::bind(OptionBinder& binder) {
+  binder.choice("strategy", strategy, "trust-region strategy", {"lm", "dogleg"});
+  binder.flag("active_set", active_set, "hold parameters at their bounds by the sign of their multiplier (false: Ceres alone, which stalls)");
+  binder.choice("residuals", residuals, "rows given to Ceres: the square root of the normal equations, or all", {"compressed", "full"});
+  binder.number("radius", radius, "initial trust-region radius", 1e-12, 1e16);
+  binder.number("gradient_tolerance", gradient_tolerance, "stop when every free |J'r|_i / (|J_i| |r|) is at most this", 0, 1);
+  binder.number("cost_tolerance", cost_tolerance, "a round ends when the cost decreases by at most this times itself", 0, 1);
+  binder.integer("iterations", iterations, "iteration limit over all rounds", 1);
+}
+
+std::string CeresSolver::why_not(const Problem& problem) const {
+  if (options_.residuals == "full")
+    return problem.has_residuals() ? "" : "residuals=full needs residuals with a Jacobian, the problem has none";
+  return problem.has_normal_equations() ? "" : "needs residuals with a Jacobian, the problem has none";
+}
+
+Outcome CeresSolver::minimise(Run& run) const {
+  silence_glog();
+  Workspace work{run, options_.residuals == "full", 1.0, run.start(), {}, {}, {}, {}};
+  run.normal_equations(work.u, work.e);
+  if (run.stop()) return {};
+  if (!std::isfinite(work.e.cost)) return {Termination::Failed, "the cost or its derivatives at the start are not finite"};
+  if (work.e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
+  work.e_at = work.u;
+  work.scale = 1.0 / std::sqrt(work.e.cost);
+  return options_.active_set ? active_set_rounds(work, options_) : single_round(work, options_);
+}
+
+SolverEntry ceres_entry() {
+  return make_entry<CeresSolver, CeresOptions>(
+      "ceres", "Ceres 2.1 trust region with bounds inside an active-set loop", false);
+}
+
+}  // namespace odobench

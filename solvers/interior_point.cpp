@@ -1,0 +1,253 @@
+#include "solvers/interior_point.hpp"
+
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "solvers/optimality.hpp"
+
+namespace odobench {
+namespace {
+
+std::mutex& ipopt_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+// Leaves Ipopt's code for the duration of a call-back. Declared before anything whose destruction could throw.
+class Outside {
+ public:
+  explicit Outside(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
+  ~Outside() { lock_.lock(); }
+  Outside(const Outside&) = delete;
+  Outside& operator=(const Outside&) = delete;
+
+ private:
+  std::unique_lock<std::mutex>& lock_;
+};
+
+// Ipopt asks for cost, gradient and Hessian of a point one by one: cost(u) is kept, and one derivative call serves
+// gradient and Hessian.
+class BoxProgram final : public Ipopt::TNLP {
+ public:
+  using Index = Ipopt::Index;
+  using Number = Ipopt::Number;
+
+  BoxProgram(Run& run, bool gauss_newton, double scale, std::unique_lock<std::mutex>& lock)
+      : run_(run), gauss_newton_(gauss_newton), scale_(scale), lock_(lock) {}
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
+    n = static_cast<Index>(run_.dimension());
+    m = 0;
+    jacobian = 0;
+    hessian = n * (n + 1) / 2;
+    style = C_STYLE;
+    return true;
+  }
+  bool get_bounds_info(Index n, Number* lower, Number* upper, Index, Number*, Number*) override {
+    std::fill(lower, lower + n, -1.0);
+    std::fill(upper, upper + n, 1.0);
+    return true;
+  }
+  bool get_starting_point(Index n, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
+    std::copy(run_.start().data(), run_.start().data() + n, x);
+    return true;
+  }
+
+  bool eval_f(Index n, const Number* x, bool, Number& value) override {
+    const Vector u = Eigen::Map<const Vector>(x, n);
+    if (same(u, derivatives_at_))
+      value = scale_ * e_.cost;
+    else
+      value = scale_ * guarded([&] { return run_.cost(u); });
+    return std::isfinite(value) && !error_;
+  }
+  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+    if (!derivatives(Eigen::Map<const Vector>(x, n))) return false;
+    Eigen::Map<Vector>(gradient, n) = 2.0 * scale_ * e_.jtr;
+    return true;
+  }
+  bool eval_g(Index, const Number*, bool, Index, Number*) override { return true; }
+  bool eval_jac_g(Index, const Number*, bool, Index, Index, Index*, Index*, Number*) override { return true; }
+  bool eval_h(Index n, const Number* x, bool, Number factor, Index, const Number*, bool, Index, Index* rows, Index* columns,
+              Number* values) override {
+    if (values != nullptr && !derivatives(Eigen::Map<const Vector>(x, n))) return false;
+    Index k = 0;
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j <= i; ++j, ++k) {
+        if (values == nullptr) {
+          rows[k] = i;
+          columns[k] = j;
+        } else {
+          values[k] = 2.0 * scale_ * factor * e_.jtj(i, j);
+        }
+      }
+    return true;
+  }
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index, const Number*,
+                         const Number*, Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    last_ = Eigen::Map<const Vector>(x, n);
+  }
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number dual_infeasibility, Number mu,
+                             Number, Number, Number, Number, Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    iterations_ = iteration;
+    dual_infeasibility_ = dual_infeasibility;
+    mu_ = mu;
+    guarded([&] {
+      if (iteration > 0) run_.iteration();
+      return 0.0;
+    });
+    return !error_ && !run_.stop();
+  }
+
+  // Half the gradient, by normal equations or by a gradient; kept for the next request at the same point.
+  bool derivatives(const Vector& u) {
+    if (same(u, derivatives_at_)) return true;
+    derivatives_at_.resize(0);
+    guarded([&] {
+      if (gauss_newton_) return run_.normal_equations(u, e_);
+      e_.jtr.resize(u.size());
+      e_.cost = run_.cost_and_gradient(u, e_.jtr);
+      e_.jtr *= 0.5;
+      return e_.cost;
+    });
+    if (error_ || !std::isfinite(e_.cost) || run_.stop()) return false;
+    derivatives_at_ = u;
+    return true;
+  }
+
+  const NormalEquations& equations() const { return e_; }
+  const Vector& last() const { return last_; }
+  Index iterations() const { return iterations_; }
+  double dual_infeasibility() const { return dual_infeasibility_; }
+  double mu() const { return mu_; }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  static bool same(const Vector& a, const Vector& b) { return a.size() == b.size() && (a.array() == b.array()).all(); }
+
+  // Runs f outside the mutex; an exception is kept for rethrow(), since it must not pass through Ipopt.
+  template <class F>
+  double guarded(const F& f) {
+    const Outside outside(lock_);
+    try {
+      return f();
+    } catch (...) {
+      error_ = std::current_exception();
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+  Run& run_;
+  bool gauss_newton_;
+  double scale_;
+  std::unique_lock<std::mutex>& lock_;
+  NormalEquations e_;
+  Vector derivatives_at_, last_;
+  Index iterations_ = 0;
+  double dual_infeasibility_ = 0, mu_ = 0;
+  std::exception_ptr error_;
+};
+
+void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options) {
+  list.SetStringValue("sb", "yes");
+  list.SetIntegerValue("print_level", 0);
+  list.SetStringValue("option_file_name", "");
+  list.SetNumericValue("bound_relax_factor", 0);
+  list.SetStringValue("mu_strategy", options.mu_strategy);
+  list.SetStringValue("nlp_scaling_method", options.nlp_scaling);
+  list.SetNumericValue("tol", options.tolerance);
+  list.SetNumericValue("dual_inf_tol", options.tolerance);
+  list.SetNumericValue("compl_inf_tol", options.tolerance);
+  list.SetIntegerValue("acceptable_iter", 0);
+  list.SetIntegerValue("max_iter", options.iterations);
+  list.SetStringValue("hessian_approximation", options.hessian == "lbfgs" ? "limited-memory" : "exact");
+  list.SetIntegerValue("limited_memory_max_history", options.memory);
+  list.SetStringValue("linear_solver", "mumps");
+}
+
+// Puts the coordinates that Ipopt left next to a bound on it, where -g points there.
+Vector on_bounds(const Vector& u, const Vector& half_gradient) {
+  Vector snapped = u;
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    const double bound = u[i] < 0 ? -1.0 : 1.0;
+    if (std::abs(u[i] - bound) < 1e-4 && held_by_bound(bound, half_gradient[i])) snapped[i] = bound;
+  }
+  return snapped;
+}
+
+Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& program, const InteriorPointOptions& options) {
+  const std::string numbers = fmt::format("dual infeasibility {:.2g}, barrier parameter {:.2g}, {} iterations",
+                                          program.dual_infeasibility(), program.mu(), program.iterations());
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+      return {Termination::Converged, fmt::format("Ipopt: KKT error <= {:.2g}; {}", options.tolerance, numbers)};
+    case Ipopt::Solved_To_Acceptable_Level:
+    case Ipopt::Search_Direction_Becomes_Too_Small: return {Termination::Stalled, "Ipopt: the step is too small; " + numbers};
+    case Ipopt::Restoration_Failed: return {Termination::Stalled, "Ipopt: no step lowers the cost; " + numbers};
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", program.iterations(), options.iterations)};
+    case Ipopt::Invalid_Number_Detected:
+      return {Termination::Failed, "Ipopt: the cost or its derivatives are not finite; " + numbers};
+    default: return {Termination::Failed, fmt::format("Ipopt: return status {}; {}", static_cast<int>(status), numbers)};
+  }
+}
+
+}  // namespace
+
+void InteriorPointOptions::bind(OptionBinder& binder) {
+  binder.choice("hessian", hessian, "second derivatives: 2 J'J, or limited-memory BFGS (needs only a gradient)", {"gauss-newton", "lbfgs"});
+  binder.integer("memory", memory, "pairs kept by hessian=lbfgs", 1, 1000);
+  binder.choice("mu_strategy", mu_strategy, "update of the barrier parameter", {"adaptive", "monotone"});
+  binder.choice("nlp_scaling", nlp_scaling, "Ipopt's own scaling of the cost", {"none", "gradient-based"});
+  binder.number("tolerance", tolerance, "KKT error of the cost relative to its start at which to stop", 1e-16, 1);
+  binder.integer("iterations", iterations, "iteration limit", 1);
+}
+
+std::string InteriorPoint::why_not(const Problem& problem) const {
+  if (options_.hessian == "lbfgs") return problem.has_gradient() ? "" : "needs a gradient, the problem has none";
+  if (problem.has_normal_equations()) return "";
+  return problem.has_gradient() ? "hessian=gauss-newton needs residuals with a Jacobian, the problem has only a gradient: use hessian=lbfgs"
+                                : "needs residuals with a Jacobian, the problem has none";
+}
+
+Outcome InteriorPoint::minimise(Run& run) const {
+  const double cost = run.cost(run.start());
+  if (run.stop()) return {};
+  if (!std::isfinite(cost)) return {Termination::Failed, "the cost at the start is not finite"};
+  if (cost == 0) return {Termination::Converged, "cost 0 at the start"};
+
+  std::unique_lock<std::mutex> lock(ipopt_mutex());
+  const Ipopt::SmartPtr<BoxProgram> program = new BoxProgram(run, options_.hessian == "gauss-newton", 1.0 / std::abs(cost), lock);
+  Ipopt::ApplicationReturnStatus status = Ipopt::Internal_Error;
+  {
+    const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+    set_options(*application->Options(), options_);
+    status = application->Initialize("");  // no file name: no ipopt.opt is read
+    if (status == Ipopt::Solve_Succeeded) status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(program)));
+  }
+  program->rethrow();
+  if (run.stop()) return {};
+  const Outcome outcome = outcome_of(status, *program, options_);
+  if (program->last().size() > 0 && program->derivatives(program->last())) {
+    const Vector snapped = on_bounds(program->last(), program->equations().jtr);
+    lock.unlock();
+    if (snapped != program->last()) run.cost(snapped);
+    lock.lock();
+  }
+  return outcome;
+}
+
+SolverEntry interior_point_entry() {
+  return make_entry<InteriorPoint, InteriorPointOptions>(
+      "ip", "interior point (Ipopt 3.11) with Gauss-Newton or L-BFGS Hessian", false);
+}
+
+}  // namespace odobench
