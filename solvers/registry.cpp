@@ -9,6 +9,7 @@
 #include "solvers/ceres_solver.hpp"
 #include "solvers/interior_point.hpp"
 #include "solvers/levenberg_marquardt.hpp"
+#include "solvers/nlopt_solvers.hpp"
 
 namespace odobench {
 
@@ -19,6 +20,7 @@ const std::vector<SolverEntry>& solver_registry() {
     rows.push_back(ceres_entry());
     rows.push_back(interior_point_entry());
     rows.push_back(cmaes_entry());
+    for (SolverEntry& entry : nlopt_entries()) rows.push_back(std::move(entry));
     return rows;
   }();
   return registry;
