@@ -1,0 +1,269 @@
+#include "solvers/nlopt_solvers.hpp"
+
+#include <fmt/format.h>
+#include <nlopt.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "solvers/nlopt_algorithms.hpp"
+#include "solvers/optimality.hpp"
+
+namespace odobench {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far below.
+constexpr double kStopValue = -1e200;
+constexpr double kBelowStopValue = -1e250;
+struct LeaveStogo {};  // StoGO is C++ with automatic storage: an exception leaves it cleanly
+
+using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
+
+const std::vector<NloptAlgorithm>& local_methods() {
+  static const std::vector<NloptAlgorithm> rows = [] {
+    std::vector<NloptAlgorithm> list;
+    for (const NloptAlgorithm& row : nlopt_algorithms())
+      if (!row.global) list.push_back(row);
+    return list;
+  }();
+  return rows;
+}
+
+const NloptAlgorithm& local_method(const std::string& name) {
+  for (const NloptAlgorithm& row : local_methods())
+    if (row.name == name) return row;
+  throw std::logic_error("unknown local method " + name);
+}
+
+// What NLopt minimises: the scaled cost of a Run.
+class Objective {
+ public:
+  Objective(Run& run, const NloptAlgorithm& algorithm) : run_(run), algorithm_(algorithm) {}
+
+  void set_scale(double cost) {
+    if (std::isfinite(cost) && cost != 0) scale_ = 1.0 / std::abs(cost);
+  }
+  void attach(nlopt_opt handle) { handle_ = handle; }
+  int evaluations() const { return evaluations_; }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+  // Projected gradient of the scaled cost at the lowest point whose gradient was seen.
+  double residual_gradient() const { return gradient_at_.size() == 0 ? kInfinity : projected_gradient(gradient_at_, gradient_); }
+
+  static double call(unsigned n, const double* x, double* gradient, void* self) {
+    return static_cast<Objective*>(self)->evaluate(n, x, gradient);
+  }
+
+ private:
+  double evaluate(unsigned n, const double* x, double* gradient) {
+    const auto m = static_cast<Eigen::Index>(n);
+    if (gradient != nullptr) std::fill(gradient, gradient + n, 0.0);
+    double cost = kInfinity;
+    Vector g;
+    try {
+      if (!run_.stop()) {
+        ++evaluations_;
+        const Eigen::Map<const Vector> u(x, m);
+        if (gradient != nullptr) {
+          g.resize(m);
+          cost = run_.cost_and_gradient(u, g);
+        } else {
+          cost = run_.cost(u);
+        }
+        run_.iteration();
+      }
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    if (error_ || run_.stop()) return leave();
+    if (!std::isfinite(cost)) return worst_ + std::abs(worst_) + 1.0;
+    const double value = scale_ * cost;
+    worst_ = std::max(worst_, value);
+    if (gradient != nullptr) {
+      Eigen::Map<Vector>(gradient, m) = scale_ * g;
+      if (value < lowest_) {
+        lowest_ = value;
+        gradient_ = scale_ * g;
+        gradient_at_ = Eigen::Map<const Vector>(x, m);
+      }
+    }
+    return value;
+  }
+
+  double leave() {
+    nlopt_force_stop(handle_);
+    if (algorithm_.statics && algorithm_.gradient) throw LeaveStogo{};
+    if (algorithm_.statics) return kBelowStopValue;
+    return worst_ + std::abs(worst_) + 1.0;
+  }
+
+  Run& run_;
+  const NloptAlgorithm& algorithm_;
+  nlopt_opt handle_ = nullptr;
+  double scale_ = 1;
+  double worst_ = 0;
+  double lowest_ = kInfinity;
+  int evaluations_ = 0;
+  Vector gradient_, gradient_at_;
+  std::exception_ptr error_;
+};
+
+// The mutex of the algorithms with static variables; waiting for it ends when the driver says stop.
+class StaticsLock {
+ public:
+  StaticsLock(Run& run, bool needed) {
+    if (!needed) return;
+    static std::timed_mutex mutex;
+    lock_ = std::unique_lock<std::timed_mutex>(mutex, std::defer_lock);
+    while (!lock_.try_lock_for(std::chrono::milliseconds(10)) && !run.stop()) {
+    }
+  }
+
+ private:
+  std::unique_lock<std::timed_mutex> lock_;
+};
+
+void set_tolerances(nlopt_opt handle, double xtol, double ftol) {
+  nlopt_set_xtol_rel(handle, xtol);
+  nlopt_set_xtol_abs1(handle, xtol);  // the box has half-width 1: also a relative measure
+  nlopt_set_ftol_rel(handle, ftol);
+}
+
+Handle make_handle(const NloptOptions& options, Objective& objective, Eigen::Index dimension) {
+  const NloptAlgorithm& algorithm = *options.algorithm;
+  const auto n = static_cast<unsigned>(dimension);
+  Handle handle(nlopt_create(algorithm.id, n), &nlopt_destroy);
+  if (!handle) throw std::runtime_error(fmt::format("NLopt: no memory for {} parameters", n));
+  nlopt_set_lower_bounds1(handle.get(), -1.0);
+  nlopt_set_upper_bounds1(handle.get(), 1.0);
+  nlopt_set_min_objective(handle.get(), &Objective::call, &objective);
+  set_tolerances(handle.get(), options.xtol, options.ftol);
+  if (algorithm.statics && !algorithm.gradient) nlopt_set_stopval(handle.get(), kStopValue);
+  if (options.step > 0) nlopt_set_initial_step1(handle.get(), options.step);
+  if (options.population > 0) nlopt_set_population(handle.get(), static_cast<unsigned>(options.population));
+  if (algorithm.memory) nlopt_set_vector_storage(handle.get(), static_cast<unsigned>(options.memory));
+  if (algorithm.local) {
+    const NloptAlgorithm& method = local_method(options.local);
+    const Handle local(nlopt_create(method.id, n), &nlopt_destroy);
+    set_tolerances(local.get(), options.local_xtol, options.ftol);
+    if (method.memory) nlopt_set_vector_storage(local.get(), 100);
+    nlopt_set_local_optimizer(handle.get(), local.get());
+  }
+  objective.attach(handle.get());
+  return handle;
+}
+
+std::string in_words(nlopt_result code, const NloptOptions& options) {
+  switch (code) {
+    case NLOPT_FTOL_REACHED: return fmt::format("relative change of the cost <= {:g}", options.ftol);
+    case NLOPT_XTOL_REACHED: return fmt::format("change of the parameters <= {:g} of the box", options.xtol);
+    case NLOPT_ROUNDOFF_LIMITED: return "progress is limited by rounding";
+    case NLOPT_SUCCESS: return "the method says success";
+    case NLOPT_FAILURE: return "the method found no further step";
+    default: return nlopt_result_to_string(code);
+  }
+}
+
+}  // namespace
+
+void NloptOptions::bind(OptionBinder& binder) {
+  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box", 0, 1);
+  binder.number("ftol", ftol, "stop when the cost changes by at most this times itself", 0, 1);
+  binder.integer("evaluations", evaluations, "evaluation limit of its own", 1);
+  if (algorithm->gradient && !algorithm->global)
+    binder.number("gradient_tolerance", gradient_tolerance, "largest projected gradient, relative to the cost at the start, that counts as converged", 0, 1);
+  if (!algorithm->global) {
+    binder.integer("restarts", restarts, "further starts from the best point while they gain", 0, 1000);
+    binder.number("restart_gain", restart_gain, "relative gain of a start below which there is no further one", 0, 1);
+  }
+  if (algorithm->step) binder.number("step", step, "initial step in units of half the box (0: NLopt's choice)", 0, 2);
+  if (algorithm->population) binder.integer("population", population, "population size (0: NLopt's choice)", 0, 1000000);
+  if (algorithm->memory) binder.integer("memory", memory, "gradient pairs kept", 1, 10000);
+  if (algorithm->local) {
+    std::vector<std::string> names;
+    for (const NloptAlgorithm& row : local_methods()) names.push_back(row.name);
+    binder.choice("local", local, "local method", std::move(names));
+    binder.number("local_xtol", local_xtol, "xtol of the local method", 0, 1);
+  }
+}
+
+std::string NloptSolver::why_not(const Problem& problem) const {
+  const NloptAlgorithm& algorithm = *options_.algorithm;
+  const Eigen::Index free = Box(problem.parameters()).dimension();
+  if (algorithm.most_parameters > 0 && free > algorithm.most_parameters)
+    return fmt::format("takes at most {} free parameters, the problem has {}", algorithm.most_parameters, free);
+  if (algorithm.gradient && !problem.has_gradient()) return "needs a gradient, the problem has none";
+  if (algorithm.local && local_method(options_.local).gradient && !problem.has_gradient())
+    return fmt::format("local={} needs a gradient, the problem has none; local=bobyqa needs none", options_.local);
+  return "";
+}
+
+Outcome NloptSolver::minimise(Run& run) const {
+  const NloptAlgorithm& algorithm = *options_.algorithm;
+  const StaticsLock statics(run, algorithm.statics);
+  if (run.stop()) return {};
+  nlopt_srand(static_cast<unsigned long>(run.random().engine()() & 0xffffffffu));
+  const double start_cost = run.cost(run.start());
+  if (run.stop()) return {};
+  if (algorithm.gradient && !std::isfinite(start_cost)) return {Termination::Failed, "the cost at the start is not finite"};
+
+  Objective objective(run, algorithm);
+  objective.set_scale(start_cost);
+  const Handle handle = make_handle(options_, objective, run.dimension());
+  double before = start_cost;
+  for (int round = 0;; ++round) {
+    const int left = options_.evaluations - objective.evaluations();
+    if (left <= 0)
+      return {Termination::IterationLimit, fmt::format("{} evaluations >= limit {} of the method", objective.evaluations(), options_.evaluations)};
+    nlopt_set_maxeval(handle.get(), left);
+    Vector u = run.has_best() ? run.best() : run.start();
+    double value = 0;
+    nlopt_result code = NLOPT_FAILURE;
+    try {
+      code = nlopt_optimize(handle.get(), u.data(), &value);
+    } catch (const LeaveStogo&) {
+    }
+    objective.rethrow();
+    if (run.stop()) return {};
+    if (code == NLOPT_INVALID_ARGS || code == NLOPT_OUT_OF_MEMORY) {
+      const char* detail = nlopt_get_errmsg(handle.get());
+      return {Termination::Failed, fmt::format("NLopt: {}{}{}", nlopt_result_to_string(code), detail ? ": " : "", detail ? detail : "")};
+    }
+    if (code == NLOPT_MAXEVAL_REACHED) continue;  // the limit above
+    const std::string words = in_words(code, options_);
+    if (algorithm.global && !(algorithm.local && code < 0 && round < options_.restarts)) return {Termination::Stalled, words};
+
+    const double after = run.best_cost();
+    const double gain = (before - after) / std::abs(after);
+    before = after;
+    if (algorithm.gradient && objective.residual_gradient() <= options_.gradient_tolerance)
+      return {Termination::Converged, fmt::format("{}; projected gradient {:.2g} <= {:.2g} (relative) after {} restarts", words,
+                                                  objective.residual_gradient(), options_.gradient_tolerance, round)};
+    const bool settled = round > 0 && !(gain > options_.restart_gain);
+    if (!settled && round < options_.restarts) continue;
+    if (algorithm.gradient)
+      return {Termination::Stalled, fmt::format("{}; projected gradient {:.2g} > {:.2g} (relative), restart {} gained {:.2g}", words,
+                                                objective.residual_gradient(), options_.gradient_tolerance, round, gain)};
+    if (settled)
+      return {Termination::Converged, fmt::format("{}; restart {} gained {:.2g} <= {:.2g} of the cost", words, round, gain, options_.restart_gain)};
+    return {Termination::Stalled, fmt::format("{} after {} restarts, the last gained {:.2g} of the cost", words, round, gain)};
+  }
+}
+
+std::vector<SolverEntry> nlopt_entries() {
+  std::vector<SolverEntry> entries;
+  for (const NloptAlgorithm& row : nlopt_algorithms()) {
+    NloptOptions defaults;
+    defaults.algorithm = &row;
+    if (row.gradient && !row.global) defaults.evaluations = 10000;
+    defaults.memory = 100;
+    entries.push_back(make_entry<NloptSolver, NloptOptions>("nlopt:" + row.name, row.summary, row.stochastic, defaults));
+  }
+  return entries;
+}
+
+}  // namespace odobench

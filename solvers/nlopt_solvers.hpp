@@ -1,0 +1,52 @@
+// The algorithms of NLopt 2.7.1 (S. G. Johnson) that apply to a box without other constraints, as nlopt:NAME.
+//
+// They see unit coordinates u in [-1, 1]^m and the cost divided by its value at the start, so that neither the units of
+// the parameters nor the scale of the cost matters (SLSQP stops at once on the raw calibration cost). A cost that is
+// not finite becomes a finite one above every cost seen. Budget, clock and interruption are the driver's.
+//
+// A local method that stops is started again from the best point, up to `restarts` times. With a gradient the stop
+// counts as converged when the projected gradient of the scaled cost is at most gradient_tolerance; without one when
+// a restart gains at most restart_gain of the cost. Everything else that ends by a tolerance is reported as stalled.
+//
+// Random numbers: NLopt's generator is thread-local since 2.4 and is seeded here from the run's engine before it
+// starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and AGS
+// have static variables besides; one mutex lets one run of them at a time through, evaluations included.
+#pragma once
+
+#include "solvers/solver.hpp"
+
+namespace odobench {
+
+struct NloptAlgorithm;  // a row of the table in nlopt_algorithms.hpp
+
+struct NloptOptions {
+  const NloptAlgorithm* algorithm = nullptr;
+  double xtol = 1e-10;
+  double ftol = 1e-14;
+  double gradient_tolerance = 1e-9;
+  double restart_gain = 1e-8;
+  double step = 0;
+  int population = 0;
+  int memory = 0;
+  int restarts = 5;
+  int evaluations = 100000;
+  std::string local = "lbfgs";
+  double local_xtol = 1e-8;
+  void bind(OptionBinder& binder);
+  void validate() const {}
+};
+
+class NloptSolver final : public Solver {
+ public:
+  explicit NloptSolver(NloptOptions options) : options_(std::move(options)) {}
+  std::string why_not(const Problem& problem) const override;
+  Outcome minimise(Run& run) const override;
+
+ private:
+  NloptOptions options_;
+};
+
+// One entry per algorithm.
+std::vector<SolverEntry> nlopt_entries();
+
+}  // namespace odobench
