@@ -1,1 +1,5 @@
-int main() { return 0; }
+#include "bench/cli.hpp"
+
+int main(int argc, char** argv) {
+  return odobench::bench_main(argc, argv);
+}

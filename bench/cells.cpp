@@ -1,0 +1,150 @@
+#include "bench/cells.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <set>
+
+#include "bench/context.hpp"
+#include "solvers/random.hpp"
+#include "solvers/registry.hpp"
+
+namespace odobench {
+namespace {
+
+// Hands out the cells in order and keeps the first exception.
+class Dispatcher {
+ public:
+  Dispatcher(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
+             const std::atomic<bool>& interrupt, CellWatcher& watcher)
+      : problem_(problem),
+        cells_(cells),
+        budget_(budget),
+        threads_(threads),
+        interrupt_(interrupt),
+        watcher_(watcher) {}
+
+  void work() {
+    while (!stop_.load() && !interrupt_.load()) {
+      const std::size_t cell = next_.fetch_add(1);
+      if (cell >= cells_.size()) return;
+      try {
+        run(cell);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        stop_.store(true);
+      }
+    }
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void run(std::size_t index) {
+    const RunCell& cell = cells_[index];
+    watcher_.started(index);
+    SolveOptions options;
+    options.budget = budget_;
+    options.seed = cell.seed;
+    options.interrupt = &interrupt_;
+    options.threads = threads_;
+    options.polish = cell.polish;
+    options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
+    const Vector start = cell.random_start ? random_start(problem_, cell.start_seed) : problem_.start();
+    const std::string begin = utc_now();
+    const Problem own = problem_;  // a copy has evaluation counts of its own
+    const Result result = solve(own, cell.solver, start, options);
+    watcher_.finished(index, result, begin);
+  }
+
+  const Problem& problem_;
+  const std::vector<RunCell>& cells_;
+  const Budget& budget_;
+  const int threads_;
+  const std::atomic<bool>& interrupt_;
+  CellWatcher& watcher_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+std::string RunCell::label() const {
+  return polish.name.empty() ? solver.text() : solver.text() + "+" + polish.text();
+}
+
+std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
+                                        std::vector<std::string>& notes) {
+  std::vector<SolverSpec> specs;
+  std::set<std::string> seen;
+  const auto take = [&](const SolverSpec& spec) {
+    find_solver(spec.name).make(spec.options, nullptr);  // throws on an unknown name or a bad option
+    if (seen.insert(spec.text()).second)
+      specs.push_back(spec);
+    else
+      notes.push_back(fmt::format("solver '{}' is listed more than once and runs once", spec.text()));
+  };
+  for (const std::string& list : lists)
+    for (const SolverSpec& spec : parse_solver_list(list)) {
+      if (spec.name == "all" && spec.options.empty())
+        for (const SolverEntry& entry : solver_registry()) take({entry.name, {}});
+      else
+        take(spec);
+    }
+  return specs;
+}
+
+std::vector<RunCell> plan_cells(const CellPlan& plan, std::vector<std::string>& notes) {
+  std::vector<RunCell> cells;
+  std::string once;
+  for (const SolverSpec& solver : plan.solvers) {
+    const bool same_each_time = !find_solver(solver.name).stochastic && !plan.random_start;
+    if (same_each_time && plan.repeat > 1) once += (once.empty() ? "" : ", ") + solver.text();
+    for (int repetition = 1; repetition <= (same_each_time ? 1 : plan.repeat); ++repetition) {
+      const std::string number = std::to_string(repetition);
+      RunCell cell;
+      cell.solver = solver;
+      if (solver.name != plan.polish.name) cell.polish = plan.polish;
+      cell.repetition = repetition;
+      cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, solver.text(), number});
+      cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
+      cell.random_start = plan.random_start;
+      cells.push_back(std::move(cell));
+    }
+  }
+  if (!once.empty())
+    notes.push_back(fmt::format("{}: deterministic, so run once from the nominal start instead of {} times",
+                                once, plan.repeat));
+  return cells;
+}
+
+void run_cells(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
+               const std::atomic<bool>& interrupt, CellWatcher& watcher) {
+  Dispatcher dispatcher(problem, cells, budget, threads, interrupt, watcher);
+  if (threads <= 1) {
+    dispatcher.work();
+  } else {
+    // The library's own limit is one thread per core; asking for more must give more.
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                              static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      tbb::task_group workers;
+      for (int i = 1; i < threads; ++i) workers.run([&] { dispatcher.work(); });
+      dispatcher.work();
+      workers.wait();
+    });
+  }
+  dispatcher.rethrow();
+}
+
+}  // namespace odobench

@@ -1,0 +1,60 @@
+// The cells of a comparison (solver x repetition), their seeds and starts, and running them side by side.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "problems/problem.hpp"
+#include "solvers/solve.hpp"
+
+namespace odobench {
+
+struct RunCell {
+  SolverSpec solver;
+  SolverSpec polish;  // name "" means none
+  int repetition = 1;
+  std::uint64_t seed = 0;
+  std::uint64_t start_seed = 0;  // of a random start
+  bool random_start = false;
+
+  std::string label() const;  // of its table row: "pso", "pso[swarm=60]+lm"
+};
+
+struct CellPlan {
+  std::vector<SolverSpec> solvers;
+  SolverSpec polish;
+  int repeat = 1;
+  std::uint64_t base_seed = 1;
+  bool random_start = false;
+  std::string problem, dataset;  // names the seeds are derived from
+};
+
+// Reads comma lists of solvers, expands "all" to the whole registry and checks every option. Throws
+// std::invalid_argument; a solver listed twice is dropped with a line in `notes`.
+std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
+                                        std::vector<std::string>& notes);
+
+// One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set, solver,
+// repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the same for
+// every solver. A deterministic solver from the nominal start gives the same answer each time: it gets one
+// cell, and `notes` a line. A polish applies to every solver but itself.
+std::vector<RunCell> plan_cells(const CellPlan& plan, std::vector<std::string>& notes);
+
+// What is going on, called from the threads that run: implementations lock.
+class CellWatcher {
+ public:
+  virtual ~CellWatcher() = default;
+  virtual void started(std::size_t cell) = 0;
+  virtual void progressed(std::size_t cell, const Progress& progress) = 0;
+  // `time_utc`: when the run began.
+  virtual void finished(std::size_t cell, const Result& result, const std::string& time_utc) = 0;
+};
+
+// Runs the cells on `threads` threads, begun in their order; a population solver's batches use threads that
+// have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins. After an
+// exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
+void run_cells(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
+               const std::atomic<bool>& interrupt, CellWatcher& watcher);
+
+}  // namespace odobench

@@ -1,0 +1,216 @@
+#include "bench/cli.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+
+#include "bench/check_command.hpp"
+#include "bench/context.hpp"
+#include "bench/evaluate_command.hpp"
+#include "bench/import_command.hpp"
+#include "bench/list_command.hpp"
+#include "bench/number_text.hpp"
+#include "bench/run_arguments.hpp"
+#include "bench/run_command.hpp"
+#include "bench/table_output.hpp"
+#include "solvers/options.hpp"
+
+namespace odobench {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  bench                                              four solvers on the demo set
+  bench --solver=lm,pso --data=set.json --repeat=10  compare on your own data
+  bench --solver="pso[swarm=60],ga" --polish=lm --out=results
+  bench --solver=all --problem=rosenbrock --dimension=6 --start=random
+  bench evaluate --data=set.json --parameters=nominal,mine.json
+  bench list solvers
+  bench import vitko2024 --from=DIR --out=set.json
+  bench check --baseline=golden.json results
+
+Without a verb bench runs solvers: 'bench run --help' lists those options.
+Exit codes: 0 done, 1 a check failed or no solver gave a result, 2 wrong usage, 3 wrong data, 130 interrupted.)";
+
+constexpr const char* kRunExamples = R"(Examples:
+  bench --solver=lm --data=set.json
+  bench --solver=pso,cmaes --repeat=20 --seed=7 --max-evals=30000 --out=results --format=md
+  bench --solver=lm,ip --start=random --repeat=20
+  bench --config=experiment.json --threads=1
+A configuration file holds these options without dashes: {"solver": ["lm", "pso[swarm=60]"], "repeat": 10}
+Every method also ends by itself; 'bench list solvers' shows its options.)";
+
+// Everything CLI11 writes to.
+struct Arguments {
+  RunOptions run;
+  std::string config;
+  EvaluateOptions evaluate;
+  ListOptions list;
+  ImportOptions import;
+  DemoOptions demo;
+  CheckOptions check;
+  ReportOptions report;
+};
+
+struct Verb {
+  CLI::App* app;
+  std::function<ExitCode()> execute;
+};
+
+void add_format(CLI::App& app, std::string& format) {
+  app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
+}
+
+std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
+  CLI::App* evaluate = app.add_subcommand("evaluate", "cost and error tables of given parameters");
+  evaluate->add_option("--data", a.evaluate.data, "data set [the demo set]")->type_name("SET.JSON");
+  evaluate
+      ->add_option("--parameters", a.evaluate.parameters,
+                   "JSON files ({\"a1\": 0.1125, ...} in metres, or an array of such), 'nominal', or names "
+                   "the set knows "
+                   "such as published:lm, truth; a comma list, may be given again [nominal]")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  add_format(*evaluate, a.evaluate.format);
+
+  CLI::App* list = app.add_subcommand("list", "solvers with their options, problems, data sets");
+  list->add_option("what", a.list.what, "solvers, problems or data")->required();
+  list->add_option("set", a.list.data, "with data: the set to describe [known places]");
+  add_format(*list, a.list.format);
+
+  CLI::App* report = app.add_subcommand("report", "tables of stored runs");
+  report->add_option("runs", a.report.runs, "folders with runs.jsonl, or .jsonl files")->required();
+  add_format(*report, a.report.format);
+
+  CLI::App* check =
+      app.add_subcommand("check", "compare stored runs with a baseline; exit code 1 when something moved");
+  check->add_option("--baseline", a.check.baseline, "file of expected values with tolerances")
+      ->required()
+      ->type_name("FILE");
+  check->add_option("runs", a.check.runs, "folders with runs.jsonl, or .jsonl files")->required();
+  check->add_flag("--update", a.check.update,
+                  "write these runs to the baseline instead, keeping its tolerances");
+  add_format(*check, a.check.format);
+
+  return {{evaluate, [&a] { return evaluate_command(a.evaluate); }},
+          {list, [&a] { return list_command(a.list); }},
+          {report, [&a] { return report_command(a.report); }},
+          {check, [&a] { return check_command(a.check); }}};
+}
+
+std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
+  CLI::App* run = app.add_subcommand("run", "run solvers on a problem and compare them (the default verb)");
+  add_run_options(*run, a.run, a.config);
+  run->footer(kRunExamples);
+
+  CLI::App* import = app.add_subcommand("import", "make a data set of published raw files");
+  import->add_option("source", a.import.source, "vitko2024")->required();
+  import->add_option("--from", a.import.from, "folder with the raw files")->required()->type_name("DIR");
+  import->add_option("--out", a.import.out, "data set to write")->required()->type_name("SET.JSON");
+  import->add_flag("--overwrite", a.import.overwrite, "replace a data set that is there");
+  import->add_flag("--quiet", a.import.quiet, "no progress");
+
+  CLI::App* demo = app.add_subcommand("demo", "make the demo data set");
+  demo->add_option("--out", a.demo.out, "folder for set.json")->required()->type_name("DIR");
+  demo->add_option_function<std::string>(
+          "--seed", [&a](const std::string& text) { a.demo.seed = seed_number("--seed", text); },
+          "of its noise [that of the set in the repository]")
+      ->type_name("N");
+  demo->add_flag("--overwrite", a.demo.overwrite, "replace a data set that is there");
+
+  return {{run,
+           [run, &a] {
+             if (!a.config.empty()) apply_config(*run, a.config);
+             return run_command(a.run);
+           }},
+          {import, [&a] { return import_command(a.import); }},
+          {demo, [&a] { return demo_command(a.demo); }}};
+}
+
+// CLI11 would report leftovers as a list; one line with the nearest name is clearer.
+void refuse_leftovers(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining();
+  if (left.empty()) return;
+  if (left.front().rfind('-', 0) == 0 && left.front().size() > 1)
+    throw std::invalid_argument(fmt::format("unknown option '{}'{}; 'bench {} --help' lists them",
+                                            left.front(), option_suggestion(app, left.front()),
+                                            app.get_name()));
+  throw std::invalid_argument(
+      fmt::format("unexpected argument '{}'; see 'bench {} --help'", left.front(), app.get_name()));
+}
+
+// Puts the default verb in front and refuses an unknown one.
+void complete_verb(std::vector<std::string>& words, const std::vector<Verb>& verbs) {
+  const bool top = !words.empty() && (words[0] == "-h" || words[0] == "--help" || words[0] == "--version");
+  if (top) return;
+  if (words.empty() || words[0].rfind('-', 0) == 0) {
+    words.insert(words.begin(), "run");
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
+  if (std::find(names.begin(), names.end(), words[0]) != names.end()) return;
+  const std::string near = nearest_name(words[0], names);
+  throw std::invalid_argument(fmt::format("unknown verb '{}'{}; 'bench --help' lists them", words[0],
+                                          near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+}
+
+ExitCode dispatch(std::vector<std::string> words) {
+  CLI::App app{"Calibrates wheeled robots from recordings and compares the solvers that do it.", "bench"};
+  Arguments arguments;
+  std::vector<Verb> verbs = add_writing_verbs(app, arguments);
+  for (Verb& verb : add_reading_verbs(app, arguments)) verbs.push_back(std::move(verb));
+  app.footer(kExamples);
+  app.set_version_flag("--version", version_line);
+  for (const Verb& verb : verbs) {
+    verb.app->allow_extras();
+    verb.app->set_version_flag("--version", version_line);
+  }
+  complete_verb(words, verbs);
+  std::reverse(words.begin(), words.end());  // the order CLI11 takes a vector in
+  try {
+    app.parse(words);
+  } catch (const CLI::CallForHelp&) {
+    print_text(app.help());
+    return ExitCode::Success;
+  } catch (const CLI::CallForVersion& version) {
+    print_text(std::string(version.what()) + "\n");
+    return ExitCode::Success;
+  } catch (const CLI::ParseError& error) {
+    for (const Verb& verb : verbs)
+      if (verb.app->parsed()) refuse_leftovers(*verb.app);  // a misspelt option explains a missing one
+    throw std::invalid_argument(error.what());
+  }
+  for (const Verb& verb : verbs) {
+    if (!verb.app->parsed()) continue;
+    refuse_leftovers(*verb.app);
+    return verb.execute();
+  }
+  throw std::logic_error("no verb was parsed");
+}
+
+int fail(ExitCode code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  const std::string line = fmt::format("bench: error: {}\n", message);
+  std::fwrite(line.data(), 1, line.size(), stderr);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int bench_main(int argc, char** argv) {
+  try {
+    return static_cast<int>(dispatch(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));
+  } catch (const Interruption&) {
+    return fail(ExitCode::Interrupted, "interrupted; nothing was written");
+  } catch (const std::invalid_argument& error) {
+    return fail(ExitCode::Usage, error.what());
+  } catch (const std::exception& error) {
+    return fail(ExitCode::Data, error.what());
+  }
+}
+
+}  // namespace odobench

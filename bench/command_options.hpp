@@ -1,0 +1,71 @@
+// What each verb was asked to do, as plain data: filled by cli.cpp, read by the *_command files.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solvers/run.hpp"
+
+namespace odobench {
+
+// Ends runs whose method would go on for very long; --max-evals=none lifts it.
+inline constexpr std::int64_t kDefaultMaxEvaluations = 50000;
+
+struct RunOptions {
+  std::vector<std::string> solvers;  // each a comma list as typed; empty: lm,ip,ga,pso
+  std::string data;                  // path of set.json; empty: the demo set
+  std::string problem = "calibration";
+  int dimension = 0;  // of a classic problem; 0: its usual one
+  int repeat = 1;
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: one per core
+  Budget budget{kDefaultMaxEvaluations};
+  std::string start = "nominal";
+  std::string polish;  // solver, as typed; empty: none
+  std::string out;     // folder for records and tables; empty: none
+  bool overwrite = false;
+  std::string format = "console";
+  bool quiet = false;
+};
+
+struct EvaluateOptions {
+  std::string data;
+  std::vector<std::string> parameters;  // files or names, as typed; empty: nominal
+  std::string format = "console";
+};
+
+struct ListOptions {
+  std::string what;  // solvers | problems | data
+  std::string data;  // with `data`: the set to describe; empty: known places
+  std::string format = "console";
+};
+
+struct ImportOptions {
+  std::string source;  // name of the importer, "vitko2024"
+  std::string from;
+  std::string out;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+struct DemoOptions {
+  std::string out;
+  std::optional<std::uint64_t> seed;  // of the noise; none: that of the demo set in the repository
+  bool overwrite = false;
+};
+
+struct CheckOptions {
+  std::string baseline;
+  std::vector<std::string> runs;  // folders or .jsonl files
+  bool update = false;
+  std::string format = "console";
+};
+
+struct ReportOptions {
+  std::vector<std::string> runs;
+  std::string format = "console";
+};
+
+}  // namespace odobench

@@ -1,0 +1,52 @@
+#include "bench/context.hpp"
+
+#include <fmt/format.h>
+
+#include <ctime>
+#include <fstream>
+
+#include "bench/git_revision.hpp"
+
+namespace odobench {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const auto colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string compiler() {
+#if defined(__clang__)
+  return fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#elif defined(__GNUC__)
+  return fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#else
+  return "unknown";
+#endif
+}
+
+}  // namespace
+
+RunContext run_context(int threads) {
+  return {cpu_model(), compiler(), ODOBENCH_BUILD_TYPE, kGitRevision, ODOBENCH_VERSION, threads};
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc = {};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::string version_line() {
+  return fmt::format("bench {} (revision {}, {}, {})", ODOBENCH_VERSION, kGitRevision, ODOBENCH_BUILD_TYPE,
+                     compiler());
+}
+
+}  // namespace odobench

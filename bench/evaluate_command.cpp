@@ -1,0 +1,160 @@
+#include "bench/evaluate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "bench/context.hpp"
+#include "bench/records.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/error.hpp"
+#include "datasets/file_io.hpp"
+#include "reports/calibration_tables.hpp"
+#include "solvers/options.hpp"
+
+namespace odobench {
+namespace {
+
+using Json = nlohmann::json;
+
+Json parse_json(const std::string& file) {
+  const std::string text = read_file(file);
+  std::vector<std::set<std::string>> keys;
+  const Json::parser_callback_t no_duplicates = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw DataError(fmt::format("{}: the key '{}' is given twice", file, parsed.get<std::string>()));
+    return true;
+  };
+  try {
+    return Json::parse(text, no_duplicates);
+  } catch (const Json::exception& error) {
+    const auto* parse = dynamic_cast<const Json::parse_error*>(&error);
+    const std::size_t byte = parse == nullptr ? 0 : std::min(parse->byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
+    throw DataError(fmt::format("{}:{}: not valid JSON; expected an object of parameters or an array of such",
+                                file, line));
+  }
+}
+
+ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& parameters,
+                         const std::string& where, std::string label) {
+  if (!object.is_object())
+    throw DataError(fmt::format("{}: found {}, expected an object of parameters", where, object.type_name()));
+  std::vector<std::string> names;
+  for (const ParameterInfo& p : parameters) names.push_back(p.name);
+  for (const auto& [key, value] : object.items()) {
+    if (key == "name" && value.is_string()) {
+      label = value.get<std::string>();
+    } else if (std::find(names.begin(), names.end(), key) == names.end()) {
+      const std::string near = nearest_name(key, names);
+      throw DataError(fmt::format("{}: unknown key '{}'{}; expected {} .. {} and, if you like, a text 'name'",
+                                  where, key, near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                                  names.front(), names.back()));
+    }
+  }
+  Vector values(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto entry = object.find(names[i]);
+    if (entry == object.end()) throw DataError(fmt::format("{}: '{}' is missing", where, names[i]));
+    if (!entry->is_number() || !std::isfinite(entry->get<double>()))
+      throw DataError(
+          fmt::format("{}: '{}' is {}, expected a finite number", where, names[i], entry->dump()));
+    values[static_cast<Eigen::Index>(i)] = entry->get<double>();
+  }
+  return {label, values};
+}
+
+std::vector<ParameterSet> from_file(const LoadedProblem& loaded, const std::string& file) {
+  const Json root = parse_json(file);
+  const std::string stem = std::filesystem::path(file).stem().string();
+  if (!root.is_array()) return {from_object(root, loaded.problem.parameters(), file, stem)};
+  std::vector<ParameterSet> sets;
+  for (std::size_t i = 0; i < root.size(); ++i)
+    sets.push_back(from_object(root[i], loaded.problem.parameters(), fmt::format("{}: entry {}", file, i + 1),
+                               fmt::format("{} {}", stem, i + 1)));
+  if (sets.empty())
+    throw DataError(fmt::format("{}: an empty array, expected at least one object of parameters", file));
+  return sets;
+}
+
+void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
+  std::string list;
+  const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = set.values[static_cast<Eigen::Index>(i)];
+    if (value < parameters[i].lower || value > parameters[i].upper)
+      list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
+                          parameters[i].lower, parameters[i].upper);
+  }
+  if (!list.empty()) warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
+}
+
+// Comma lists, except where a file has a comma in its name.
+std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
+  std::vector<std::string> sources;
+  for (const std::string& list : lists) {
+    if (std::filesystem::exists(list)) {
+      sources.push_back(list);
+      continue;
+    }
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      sources.push_back(list.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return sources.empty() ? std::vector<std::string>{"nominal"} : sources;
+}
+
+}  // namespace
+
+std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source) {
+  if (source == "nominal") return {{"nominal", loaded.problem.start()}};
+  std::vector<std::string> names = {"nominal"};
+  if (loaded.dataset) {
+    for (const NamedParameters& known : loaded.dataset->known_parameters) {
+      if (known.name == source)
+        return {{source, Eigen::Map<const Vector>(known.values.data(),
+                                                  static_cast<Eigen::Index>(known.values.size()))}};
+      names.push_back(known.name);
+    }
+  }
+  if (std::filesystem::exists(source)) return from_file(loaded, source);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string near = nearest_name(source, names);
+  throw std::invalid_argument(
+      fmt::format("--parameters={}: neither a file nor a name this data set knows{}; known: {}", source,
+                  near.empty() ? "" : fmt::format(", did you mean '{}'?", near), list));
+}
+
+ExitCode evaluate_command(const EvaluateOptions& options) {
+  const Format format = parse_format(options.format);
+  const LoadedProblem loaded = load_calibration(options.data);
+  std::vector<ParameterSet> sets;
+  for (const std::string& source : split_sources(options.parameters))
+    for (ParameterSet& set : read_parameters(loaded, source)) {
+      const auto same = [&](const ParameterSet& s) { return s.label == set.label; };
+      if (std::any_of(sets.begin(), sets.end(), same))
+        throw std::invalid_argument(
+            fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
+      sets.push_back(std::move(set));
+    }
+  const RunContext context = run_context(1);
+  std::vector<RunRecord> records;
+  for (const ParameterSet& set : sets) {
+    warn_outside(loaded, set);
+    records.push_back(evaluation_record(loaded, set.label, set.values, context));
+  }
+  print_tables(evaluation_tables(records), format);
+  return ExitCode::Success;
+}
+
+}  // namespace odobench

@@ -1,0 +1,25 @@
+// `bench evaluate`: J and error tables of given parameters.
+#pragma once
+
+#include "bench/command_options.hpp"
+#include "bench/exit_code.hpp"
+#include "bench/problem_factory.hpp"
+
+namespace odobench {
+
+struct ParameterSet {
+  std::string label;
+  Vector values;  // in the problem's order, its units
+};
+
+// One entry of --parameters: "nominal", a name of Dataset::known_parameters ("published:lm", "truth"), or a
+// JSON file holding {"a1": 0.1125, ..., "r4": 0.0254} in the problem's units or an array of such objects;
+// "name" is optional and becomes the label, else the file's stem with a number behind it in an array. Throws
+// std::invalid_argument on a name that is neither (lists the known ones), DataError naming file and key on a
+// file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
+std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source);
+
+// Parameters outside the box are evaluated with a warning on standard error.
+ExitCode evaluate_command(const EvaluateOptions& options);
+
+}  // namespace odobench

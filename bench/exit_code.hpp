@@ -1,0 +1,22 @@
+// How the process ends. docs/cli.md states the same list for users.
+#pragma once
+
+#include <stdexcept>
+
+namespace odobench {
+
+enum class ExitCode : int {
+  Success = 0,
+  CheckFailed = 1,  // `bench check` found a difference, or not one solver of `bench run` gave a result
+  Usage = 2,  // the command line, a configuration file or an output place is wrong (std::invalid_argument)
+  Data = 3,   // a data set, record or parameter file is wrong (DataError, std::runtime_error)
+  Interrupted = 130  // SIGINT or SIGTERM; what was complete is kept
+};
+
+// Thrown to leave work that has no partial result worth keeping.
+class Interruption : public std::runtime_error {
+ public:
+  Interruption() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace odobench

@@ -1,0 +1,29 @@
+// How well the data determine the parameters at a solution: what an honest report must say beside the
+// numbers.
+#pragma once
+
+#include <string>
+
+#include "problems/problem.hpp"
+
+namespace odobench {
+
+// With q = z / scale relative parameters (scale: |nominal|, or half the box where nominal is 0), J'J in q and
+// N residuals of n free parameters,
+//     sigma^2 = J / (N - n),   cov(q) = sigma^2 (J'J)^-1   (linear least-squares theory, bounds ignored).
+struct Identifiability {
+  Vector singular_values;      // of the Jacobian in q, largest first (n)
+  Vector standard_deviations;  // relative, of each parameter in the problem's order (n); infinite when
+                               // undetermined
+  Vector weakest;              // unit vector in q of the smallest singular value
+  std::vector<Eigen::Index> parameters;  // index of each of the n free parameters
+};
+
+// Throws std::logic_error when the problem has no residuals.
+Identifiability identifiability(const Problem& problem, const ConstVectorRef& x);
+
+// One sentence: spread of the singular values and the parameters whose relative standard deviation exceeds
+// half the width of their box; "" when every parameter is determined better than its box.
+std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& label);
+
+}  // namespace odobench

@@ -1,0 +1,65 @@
+#include "bench/import_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bench/interrupt.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/demo_generator.hpp"
+#include "datasets/vitko2024.hpp"
+#include "solvers/options.hpp"
+
+namespace odobench {
+namespace {
+
+void refuse_existing(const std::filesystem::path& set, bool overwrite) {
+  if (!overwrite && std::filesystem::exists(set))
+    throw std::invalid_argument(
+        fmt::format("{}: it exists; choose another name or give --overwrite", set.string()));
+}
+
+void save(const Dataset& dataset, const std::filesystem::path& set) {
+  save_dataset(dataset, set);
+  std::size_t samples = 0;
+  for (const Recording& r : dataset.recordings) samples += r.size();
+  note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
+}
+
+}  // namespace
+
+ExitCode import_command(const ImportOptions& options) {
+  if (options.source != "vitko2024") {
+    const std::string near = nearest_name(options.source, {"vitko2024"});
+    throw std::invalid_argument(fmt::format("bench import '{}'{}: known sources: vitko2024", options.source,
+                                            near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+  }
+  refuse_existing(options.out, options.overwrite);
+  const bool draw = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  const InterruptGuard guard;
+  const auto progress = [draw](int done, int total) {
+    if (InterruptGuard::flag().load()) throw Interruption();
+    if (draw)
+      std::fputs(fmt::format("\r\x1b[K{}", done < total ? fmt::format("[{}/{}] recordings", done, total) : "")
+                     .c_str(),
+                 stderr);
+  };
+  const Dataset dataset = import_vitko2024(options.from, progress);
+  if (InterruptGuard::flag().load()) throw Interruption();
+  if (!options.quiet)
+    for (const std::string& text : dataset.notes) note(text);
+  save(dataset, options.out);
+  return ExitCode::Success;
+}
+
+ExitCode demo_command(const DemoOptions& options) {
+  const std::filesystem::path set = std::filesystem::path(options.out) / "set.json";
+  refuse_existing(set, options.overwrite);
+  save(make_demo_dataset(options.seed.value_or(kDemoSeed)), set);
+  return ExitCode::Success;
+}
+
+}  // namespace odobench

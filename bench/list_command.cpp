@@ -1,0 +1,208 @@
+#include "bench/list_command.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <stdexcept>
+
+#include "bench/locations.hpp"
+#include "bench/problem_factory.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/dataset.hpp"
+#include "problems/classic/classic_problems.hpp"
+#include "solvers/options.hpp"
+#include "solvers/registry.hpp"
+
+namespace odobench {
+namespace {
+
+Column text_column(const std::string& id, const std::string& name) {
+  Column column;
+  column.id = id;
+  column.name = name;
+  column.align = Align::Left;
+  return column;
+}
+
+Column number_column(const std::string& id, const std::string& name, const std::string& unit = "") {
+  Column column;
+  column.id = id;
+  column.name = name;
+  column.unit = unit;
+  return column;
+}
+
+std::vector<Table> solver_tables() {
+  Table solvers{
+      "solvers",
+      "Solvers",
+      {text_column("solver", "solver"), text_column("kind", "kind"), text_column("summary", "summary")},
+      {},
+      {}};
+  Table options{
+      "options",
+      "Options, as in --solver=NAME[option=value,...]",
+      {text_column("solver", "solver"), text_column("option", "option"), text_column("default", "default"),
+       text_column("allowed", "allowed"), text_column("help", "help")},
+      {},
+      {}};
+  for (const SolverEntry& entry : solver_registry()) {
+    solvers.rows.push_back({text_cell(entry.name),
+                            text_cell(entry.stochastic ? "stochastic" : "deterministic"),
+                            text_cell(entry.summary)});
+    for (const OptionDescription& o : entry.options())
+      options.rows.push_back({text_cell(entry.name), text_cell(o.name), text_cell(o.value),
+                              text_cell(o.allowed), text_cell(o.help)});
+  }
+  return {solvers, options};
+}
+
+std::vector<Table> problem_tables() {
+  Table table{"problems",
+              "Problems, as in --problem=NAME --dimension=N",
+              {text_column("problem", "problem"), number_column("dimension", "usual dimension"),
+               text_column("derivatives", "derivatives"), text_column("optimum", "known optimum")},
+              {},
+              {"calibration takes its parameters, box and recordings from --data=set.json."}};
+  table.rows.push_back({text_cell("calibration"), count_cell(static_cast<double>(kCalibrationParameters)),
+                        text_cell("residuals, Jacobian, normal equations"), text_cell("")});
+  for (const std::string& name : classic_problem_names()) {
+    const Problem problem = make_classic_problem(name, usual_dimension(name));
+    const char* derivatives = problem.has_residuals()          ? "residuals, Jacobian, normal equations"
+                              : problem.has_normal_equations() ? "normal equations"
+                              : problem.has_gradient()         ? "gradient"
+                                                               : "none";
+    table.rows.push_back(
+        {text_cell(name), count_cell(static_cast<double>(problem.dimension())), text_cell(derivatives),
+         text_cell(problem.known_optimum() ? fmt::format("{:g}", *problem.known_optimum()) : "")});
+  }
+  return {table};
+}
+
+std::vector<Table> known_data_tables() {
+  Table table{"data",
+              "Known data sets",
+              {text_column("name", "name"), text_column("file", "file")},
+              {},
+              {"'bench list data FILE' describes a set; 'bench import vitko2024 --from=DIR --out=set.json' "
+               "makes one of raw files."}};
+  for (const auto& [name, path] : known_sets())
+    table.rows.push_back({text_cell(name), text_cell(path.string())});
+  return {table};
+}
+
+double seconds_of(const Recording& r) {
+  return r.size() < 2 ? 0.0 : static_cast<double>(r.time_us.back() - r.time_us.front()) * 1e-6;
+}
+
+Table overview_table(const Dataset& set, const std::string& path) {
+  Table table{"set",
+              fmt::format("Data set {}", set.name),
+              {text_column("item", "item"), text_column("value", "value")},
+              {},
+              {}};
+  const auto row = [&](const char* item, const std::string& value) {
+    if (!value.empty()) table.rows.push_back({text_cell(item), text_cell(value)});
+  };
+  std::size_t samples = 0;
+  double seconds = 0;
+  for (const Recording& r : set.recordings) {
+    samples += r.size();
+    seconds += seconds_of(r);
+  }
+  row("file", path);
+  row("description", set.description);
+  row("robot", set.robot.name);
+  row("kinematics", set.robot.kinematics);
+  row("recordings", fmt::format("{} of {} trajectories, {} samples, {:.1f} s", set.recordings.size(),
+                                set.trajectories.size(), samples, seconds));
+  row("source", set.provenance.source);
+  row("licence", set.provenance.licence);
+  row("made by", set.provenance.made_by);
+  if (!set.provenance.files.empty())
+    row("source files", fmt::format("{}, each with its SHA-256 in the set", set.provenance.files.size()));
+  table.notes = set.notes;
+  return table;
+}
+
+Table parameter_table(const Dataset& set) {
+  Table table{
+      "parameters",
+      "Robot parameters",
+      {text_column("parameter", "parameter"), text_column("unit", "unit"),
+       number_column("nominal", "nominal"), number_column("lower", "lower"), number_column("upper", "upper")},
+      {},
+      {}};
+  for (std::size_t k = 0; k < set.known_parameters.size(); ++k) {
+    const NamedParameters& known = set.known_parameters[k];
+    table.columns.push_back(number_column(fmt::format("known_{}", k + 1), known.name));
+    if (!known.description.empty())
+      table.notes.push_back(fmt::format("{}: {}", known.name, known.description));
+  }
+  for (std::size_t i = 0; i < set.robot.parameters.size(); ++i) {
+    const RobotParameter& p = set.robot.parameters[i];
+    table.rows.push_back({text_cell(p.name), text_cell(p.unit), significant_cell(p.nominal, 7),
+                          significant_cell(p.lower, 7), significant_cell(p.upper, 7)});
+    for (const NamedParameters& known : set.known_parameters)
+      table.rows.back().push_back(significant_cell(known.values.at(i), 7));
+  }
+  return table;
+}
+
+std::vector<Table> set_tables(const std::string& path) {
+  const Dataset set = load_dataset(path);
+  Table trajectories{"trajectories",
+                     "Trajectories",
+                     {text_column("trajectory", "trajectory"), text_column("description", "description"),
+                      number_column("recordings", "recordings"), number_column("samples", "samples"),
+                      number_column("duration", "duration", "s")},
+                     {},
+                     {}};
+  for (const Trajectory& t : set.trajectories) {
+    double count = 0, samples = 0, seconds = 0;
+    for (const Recording& r : set.recordings) {
+      if (r.trajectory != t.name) continue;
+      count += 1;
+      samples += static_cast<double>(r.size());
+      seconds += seconds_of(r);
+    }
+    trajectories.rows.push_back({text_cell(t.name), text_cell(t.description), count_cell(count),
+                                 count_cell(samples), fixed_cell(seconds, 3)});
+  }
+  Table recordings{"recordings",
+                   "Recordings",
+                   {text_column("recording", "recording"), text_column("trajectory", "trajectory"),
+                    number_column("repetition", "repetition"), number_column("samples", "samples"),
+                    number_column("duration", "duration", "s")},
+                   {},
+                   {}};
+  for (const Recording& r : set.recordings)
+    recordings.rows.push_back({text_cell(r.id), text_cell(r.trajectory), count_cell(r.repetition),
+                               count_cell(static_cast<double>(r.size())), fixed_cell(seconds_of(r), 3)});
+  return {overview_table(set, path), parameter_table(set), trajectories, recordings};
+}
+
+}  // namespace
+
+ExitCode list_command(const ListOptions& options) {
+  const Format format = parse_format(options.format);
+  const std::vector<std::string> known = {"solvers", "problems", "data"};
+  if (!options.data.empty() && options.what != "data")
+    throw std::invalid_argument(
+        fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
+  if (options.what == "solvers") {
+    print_tables(solver_tables(), format);
+  } else if (options.what == "problems") {
+    print_tables(problem_tables(), format);
+  } else if (options.what == "data") {
+    print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
+  } else {
+    const std::string near = nearest_name(options.what, known);
+    throw std::invalid_argument(fmt::format("bench list '{}'{}: expected solvers, problems or data",
+                                            options.what,
+                                            near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+  }
+  return ExitCode::Success;
+}
+
+}  // namespace odobench

@@ -1,0 +1,73 @@
+#include "bench/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace odobench {
+
+int terminal_width(int descriptor, int otherwise) {
+  winsize size = {};
+  if (::isatty(descriptor) != 1 || ::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return otherwise;
+  return size.ws_col;
+}
+
+ProgressLine::ProgressLine(bool wanted, std::vector<std::string> labels)
+    : active_(wanted && ::isatty(STDERR_FILENO) == 1), labels_(std::move(labels)) {}
+
+ProgressLine::~ProgressLine() {
+  clear();
+}
+
+void ProgressLine::started(std::size_t cell) {
+  const std::lock_guard lock(mutex_);
+  running_[cell] = {};
+  draw(false);
+}
+
+void ProgressLine::progressed(std::size_t cell, const Progress& progress) {
+  const std::lock_guard lock(mutex_);
+  running_[cell] = progress;
+  draw(false);
+}
+
+void ProgressLine::finished(std::size_t cell) {
+  const std::lock_guard lock(mutex_);
+  running_.erase(cell);
+  ++done_;
+  draw(true);
+}
+
+void ProgressLine::clear() {
+  if (active_ && last_ >= 0) std::fputs("\r\x1b[K", stderr);
+  last_ = -1;
+}
+
+void ProgressLine::draw(bool now) {
+  if (!active_) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (!now && last_ >= 0 && seconds - last_ < 0.1) return;
+  last_ = seconds;
+  const int width = terminal_width(STDERR_FILENO, 80);
+  const std::string text = "\r\x1b[K" + line(static_cast<std::size_t>(std::max(width - 1, 20)));
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+std::string ProgressLine::line(std::size_t width) const {
+  std::string text = fmt::format("[{}/{}] {:.1f} s", done_, labels_.size(), last_);
+  for (const auto& [cell, progress] : running_) {
+    std::string part = "  " + labels_[cell];
+    if (std::isfinite(progress.best_cost))
+      part += fmt::format(" J {:.8g}, {} evaluations", progress.best_cost, progress.evaluations);
+    if (text.size() + part.size() > width) break;
+    text += part;
+  }
+  return text;
+}
+
+}  // namespace odobench

@@ -1,0 +1,44 @@
+// One status line on a terminal: cells done, best costs of the running solvers, evaluations, time.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "solvers/run.hpp"
+
+namespace odobench {
+
+class ProgressLine {
+ public:
+  // Draws on standard error when that is a terminal and `wanted`; else every member does nothing.
+  ProgressLine(bool wanted, std::vector<std::string> labels);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  // From any thread.
+  void started(std::size_t cell);
+  void progressed(std::size_t cell, const Progress& progress);
+  void finished(std::size_t cell);
+  void clear();
+
+ private:
+  void draw(bool now);
+  std::string line(std::size_t width) const;
+
+  const bool active_;
+  const std::vector<std::string> labels_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  double last_ = -1;
+  std::size_t done_ = 0;
+  std::map<std::size_t, Progress> running_;
+};
+
+// Columns of the terminal behind a file descriptor, `otherwise` when it is none.
+int terminal_width(int descriptor, int otherwise);
+
+}  // namespace odobench

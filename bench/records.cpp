@@ -1,0 +1,126 @@
+#include "bench/records.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+#include "bench/context.hpp"
+
+namespace odobench {
+namespace {
+
+std::vector<ParameterValue> parameter_values(const std::vector<ParameterInfo>& parameters, const Vector& x) {
+  std::vector<ParameterValue> values;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterInfo& p = parameters[i];
+    const double value = x[static_cast<Eigen::Index>(i)];
+    const char* at = p.lower == p.upper ? "" : value <= p.lower ? "lower" : value >= p.upper ? "upper" : "";
+    values.push_back({p.name, p.unit, value, p.nominal, p.lower, p.upper, at});
+  }
+  return values;
+}
+
+void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
+  record.parameters = parameter_values(loaded.problem.parameters(), x);
+  if (!loaded.calibration) return;
+  for (const MaxErrors& e : loaded.calibration->max_errors(x))
+    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+}
+
+RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
+  RunRecord record;
+  record.problem = loaded.problem.name();
+  record.dataset = loaded.dataset_name();
+  record.dataset_sha256 = loaded.dataset_sha256;
+  record.context = context;
+  record.time_utc = time_utc;
+  return record;
+}
+
+}  // namespace
+
+RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
+                     const Result& result, const RunContext& context, const std::string& time_utc) {
+  RunRecord record = empty_record(loaded, context, time_utc);
+  record.label = cell.label();
+  record.kind = result.termination == Termination::NotApplicable ? "skipped" : "run";
+  record.solver = cell.solver.name;
+  record.options = result.options;
+  record.polish = cell.polish.name.empty() ? "" : cell.polish.text();
+  record.seed = cell.seed;
+  record.base_seed = base_seed;
+  record.repetition = cell.repetition;
+  record.start = cell.random_start ? "random" : "nominal";
+  record.termination = to_string(result.termination);
+  record.message = result.message;
+  if (result.usable()) {
+    record.cost = result.cost;
+    describe_point(loaded, result.x, record);
+  }
+  record.cost_before_polish = result.cost_before_polish;
+  record.evaluations = result.counts.total();
+  record.cost_evaluations = result.counts.cost;
+  record.derivative_evaluations = result.counts.total() - result.counts.cost;
+  record.non_finite = result.non_finite;
+  record.iterations = result.iterations;
+  record.seconds = result.seconds;
+  for (const TraceEntry& t : result.trace) record.trace.push_back({t.evaluations, t.seconds, t.cost});
+  return record;
+}
+
+RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
+                            const RunContext& context) {
+  RunRecord record = empty_record(loaded, context, utc_now());
+  record.label = label;
+  record.kind = "evaluation";
+  record.termination = "evaluated";
+  record.message = "cost and errors of given parameters";
+  const Problem own = loaded.problem;
+  record.cost = own.cost(parameters);
+  record.evaluations = record.cost_evaluations = own.counts().total();
+  describe_point(loaded, parameters, record);
+  return record;
+}
+
+RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite) : path_(folder / "runs.jsonl") {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw std::invalid_argument(
+        fmt::format("--out={}: cannot make this folder: {}", folder.string(), error.message()));
+  file_ =
+      ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
+  if (file_ >= 0) return;
+  if (errno == EEXIST)
+    throw std::invalid_argument(fmt::format(
+        "--out={}: it holds runs.jsonl already; choose another folder or give --overwrite", folder.string()));
+  throw std::invalid_argument(
+      fmt::format("--out={}: cannot write runs.jsonl there: {}", folder.string(), std::strerror(errno)));
+}
+
+RecordFile::~RecordFile() {
+  ::close(file_);
+}
+
+void RecordFile::append(const RunRecord& record) {
+  const std::string line = to_json_line(record) + "\n";
+  const off_t before = ::lseek(file_, 0, SEEK_END);
+  ssize_t written = -1;
+  do {
+    written = ::write(file_, line.data(), line.size());
+  } while (written < 0 && errno == EINTR);
+  if (written == static_cast<ssize_t>(line.size())) return;
+  const std::string reason = written < 0 ? std::strerror(errno) : "the disc is full";
+  if (written > 0 && ::ftruncate(file_, before) != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot append a record: {}; the last line is incomplete", path_.string(), reason));
+  }
+  throw std::runtime_error(fmt::format("{}: cannot append a record: {}", path_.string(), reason));
+}
+
+}  // namespace odobench

@@ -1,0 +1,42 @@
+// Results -> run records, and the file that keeps them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bench/cells.hpp"
+#include "bench/problem_factory.hpp"
+#include "reports/record.hpp"
+
+namespace odobench {
+
+// Parameters count as on a bound when they are equal to it: what solvers return lies in the box to the last
+// bit, and the map of the unit box sends -1 and 1 to the bounds exactly.
+RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
+                     const Result& result, const RunContext& context, const std::string& time_utc);
+
+// J and error tables of given parameters (n, parameter units). Of a calibration or of any other problem.
+RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
+                            const RunContext& context);
+
+// DIR/runs.jsonl, appended to record by record: each is one write of a whole line, so that a process that is
+// killed leaves every record it completed.
+class RecordFile {
+ public:
+  // Creates the folder and the file. Throws std::invalid_argument when that is not possible, or when the file
+  // exists and `overwrite` is not set.
+  RecordFile(const std::filesystem::path& folder, bool overwrite);
+  ~RecordFile();
+  RecordFile(const RecordFile&) = delete;
+  RecordFile& operator=(const RecordFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  // Throws std::runtime_error when the disc is full or the like; a part of a line is taken back then.
+  void append(const RunRecord& record);
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+};
+
+}  // namespace odobench

@@ -1,0 +1,21 @@
+// The options of `bench run`, the verb that most of them belong to.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+
+#include "bench/command_options.hpp"
+
+namespace odobench {
+
+// Adds the options to `app`, writing to `options`, which must outlive it. `config` receives --config.
+void add_run_options(CLI::App& app, RunOptions& options, std::string& config);
+
+// Sets what the configuration file says and the command line, parsed before, does not. Throws
+// std::invalid_argument "file:line: ..." on unknown keys and bad values.
+void apply_config(CLI::App& app, const std::string& config);
+
+// ", did you mean '--x'?" or "" for an option that `app` does not have; "--x=1" counts as "--x".
+std::string option_suggestion(const CLI::App& app, const std::string& typed);
+
+}  // namespace odobench

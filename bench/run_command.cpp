@@ -1,0 +1,182 @@
+#include "bench/run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/cells.hpp"
+#include "bench/context.hpp"
+#include "bench/identifiability.hpp"
+#include "bench/interrupt.hpp"
+#include "bench/problem_factory.hpp"
+#include "bench/progress.hpp"
+#include "bench/records.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/file_io.hpp"
+#include "reports/calibration_tables.hpp"
+
+namespace odobench {
+namespace {
+
+// Turns finished runs into records, on disc at once and in memory in the order of the cells.
+class Recorder final : public CellWatcher {
+ public:
+  Recorder(const LoadedProblem& loaded, const std::vector<RunCell>& cells, std::uint64_t base_seed,
+           const RunContext& context, RecordFile* file, ProgressLine& progress)
+      : loaded_(loaded),
+        cells_(cells),
+        base_seed_(base_seed),
+        context_(context),
+        file_(file),
+        progress_(progress),
+        records_(cells.size()) {}
+
+  void started(std::size_t cell) override { progress_.started(cell); }
+  void progressed(std::size_t cell, const Progress& progress) override {
+    progress_.progressed(cell, progress);
+  }
+  void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
+    RunRecord record = run_record(loaded_, cells_[cell], base_seed_, result, context_, time_utc);
+    {
+      const std::lock_guard lock(mutex_);
+      if (file_ != nullptr) file_->append(record);
+      in_order_ = in_order_ && cell == finished_;
+      ++finished_;
+      records_[cell] = std::move(record);
+    }
+    progress_.finished(cell);
+  }
+
+  // Of the cells that ran, in their order.
+  std::vector<RunRecord> records() const {
+    std::vector<RunRecord> list;
+    for (const auto& record : records_)
+      if (record) list.push_back(*record);
+    return list;
+  }
+  bool in_order() const { return in_order_; }
+
+ private:
+  const LoadedProblem& loaded_;
+  const std::vector<RunCell>& cells_;
+  const std::uint64_t base_seed_;
+  const RunContext& context_;
+  RecordFile* file_;
+  ProgressLine& progress_;
+  std::mutex mutex_;
+  std::vector<std::optional<RunRecord>> records_;
+  std::size_t finished_ = 0;
+  bool in_order_ = true;
+};
+
+const RunRecord* best_run(const std::vector<RunRecord>& records) {
+  const RunRecord* best = nullptr;
+  for (const RunRecord& r : records)
+    if (r.kind == "run" && r.cost && (best == nullptr || *r.cost < *best->cost)) best = &r;
+  return best;
+}
+
+std::vector<std::string> result_notes(const LoadedProblem& loaded, const std::vector<RunRecord>& records) {
+  const RunRecord* best = best_run(records);
+  if (best == nullptr || !loaded.calibration) return {};
+  Vector x(loaded.problem.dimension());
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = best->parameters[static_cast<std::size_t>(i)].value;
+  const std::string note = identifiability_note(loaded.problem, x, best->label);
+  return note.empty() ? std::vector<std::string>{} : std::vector<std::string>{note};
+}
+
+CellPlan make_plan(const RunOptions& options, std::vector<std::string>& notes) {
+  CellPlan plan;
+  plan.solvers = resolve_solvers(
+      options.solvers.empty() ? std::vector<std::string>{"lm,ip,ga,pso"} : options.solvers, notes);
+  if (!options.polish.empty()) {
+    std::vector<std::string> dropped;
+    const std::vector<SolverSpec> polish = resolve_solvers({options.polish}, dropped);
+    if (polish.size() != 1)
+      throw std::invalid_argument(fmt::format("--polish={}: expected one solver", options.polish));
+    plan.polish = polish.front();
+  }
+  plan.repeat = options.repeat;
+  plan.base_seed = options.seed;
+  plan.random_start = options.start == "random";
+  return plan;
+}
+
+void write_in_order(const std::filesystem::path& path, const std::vector<RunRecord>& records) {
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  write_file(path, text);
+}
+
+ExitCode outcome(const RunOptions& options, const std::vector<RunRecord>& records, std::size_t cells,
+                 bool interrupted) {
+  std::size_t runs = 0, stopped = 0;
+  for (const RunRecord& r : records) {
+    if (r.kind == "evaluation") continue;
+    ++runs;
+    if (r.termination == to_string(Termination::Interrupted)) ++stopped;
+  }
+  if (interrupted && (stopped > 0 || runs < cells)) {
+    note(fmt::format("interrupted: {} of {} runs complete, {} stopped early, {} not started{}",
+                     runs - stopped, cells, stopped, cells - runs,
+                     options.out.empty() ? "" : "; records are in " + options.out));
+    return ExitCode::Interrupted;
+  }
+  if (best_run(records) == nullptr) {
+    warn("not one solver gave a result");
+    return ExitCode::CheckFailed;
+  }
+  return ExitCode::Success;
+}
+
+}  // namespace
+
+ExitCode run_command(const RunOptions& options) {
+  const Format format = parse_format(options.format);
+  std::vector<std::string> notes;
+  CellPlan plan = make_plan(options, notes);
+  const LoadedProblem loaded = make_problem(options.problem, options.dimension, options.data);
+  plan.problem = loaded.problem.name();
+  plan.dataset = loaded.dataset_name();
+  const std::vector<RunCell> cells = plan_cells(plan, notes);
+  std::vector<std::string> labels;
+  for (const RunCell& cell : cells) labels.push_back(cell.label());
+
+  const int threads = options.threads > 0
+                          ? options.threads
+                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const RunContext context = run_context(threads);
+  std::unique_ptr<RecordFile> file;
+  if (!options.out.empty()) file = std::make_unique<RecordFile>(options.out, options.overwrite);
+  if (!options.quiet)
+    for (const std::string& text : notes) note(text);
+
+  std::vector<RunRecord> records;
+  if (loaded.calibration)
+    records.push_back(evaluation_record(loaded, "nominal", loaded.problem.start(), context));
+  if (file)
+    for (const RunRecord& r : records) file->append(r);
+
+  const InterruptGuard guard;
+  ProgressLine progress(!options.quiet, labels);
+  Recorder recorder(loaded, cells, plan.base_seed, context, file.get(), progress);
+  run_cells(loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
+  progress.clear();
+  const bool interrupted = InterruptGuard::flag().load();
+  for (RunRecord& r : recorder.records()) records.push_back(std::move(r));
+
+  const std::vector<Table> tables = comparison_tables(records, result_notes(loaded, records));
+  if (file) {
+    // Cells end in an order that depends on the threads; the finished file does not.
+    if (!recorder.in_order()) write_in_order(file->path(), records);
+    save_tables(tables, options.out);
+  }
+  print_tables(tables, format);
+  return outcome(options, records, cells.size(), interrupted);
+}
+
+}  // namespace odobench

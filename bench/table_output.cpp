@@ -1,0 +1,51 @@
+#include "bench/table_output.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "bench/progress.hpp"
+#include "datasets/file_io.hpp"
+
+namespace odobench {
+namespace {
+
+constexpr int kPlainWidth = 110;
+
+void line(const char* kind, std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  const std::string whole = fmt::format("bench: {}{}\n", kind, text);
+  std::fwrite(whole.data(), 1, whole.size(), stderr);
+}
+
+}  // namespace
+
+void print_text(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));
+}
+
+void print_tables(const std::vector<Table>& tables, Format format) {
+  print_text(render(tables, format, {terminal_width(STDOUT_FILENO, kPlainWidth)}));
+}
+
+void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder) {
+  FileTransaction files;
+  for (const Format format : {Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex})
+    files.add(folder / ("tables." + file_extension(format)), render(tables, format, {kPlainWidth}));
+  files.commit();
+}
+
+void warn(const std::string& text) {
+  line("warning: ", text);
+}
+void note(const std::string& text) {
+  line("", text);
+}
+
+}  // namespace odobench

@@ -1,0 +1,24 @@
+// Tables to standard output and to files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "reports/table.hpp"
+
+namespace odobench {
+
+// Standard output; console tables as wide as the terminal, 110 columns elsewhere. Throws std::runtime_error
+// when it cannot be written.
+void print_tables(const std::vector<Table>& tables, Format format);
+void print_text(const std::string& text);
+
+// tables.txt, .md, .csv, .json and .tex in `folder`, all or none. Throws DataError.
+void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder);
+
+// One line on standard error: "bench: warning: ...".
+void warn(const std::string& text);
+void note(const std::string& text);
+
+}  // namespace odobench
