@@ -1,3 +1,6 @@
+#include <cmath>
+#include <cstdint>
+
 #include "reports/json_view.hpp"
 #include "reports/table.hpp"
 
@@ -10,9 +13,18 @@ Json number(const std::optional<double>& value) {
   return Json(finite_or_null(value));
 }
 
+// Counts are integers for machines, too.
+Json value_json(const Cell& cell) {
+  const double value = *cell.value;
+  const bool count = cell.notation == Notation::Fixed && cell.precision == 0;
+  if (count && std::abs(value) < 0x1p53 && value == std::trunc(value))
+    return static_cast<std::int64_t>(value);
+  return number(value);
+}
+
 Json cell_json(const Cell& cell, const Column& column) {
   if (cell.empty()) return nullptr;
-  const Json content = cell.value ? number(cell.value) : Json(cell.text);
+  const Json content = cell.value ? value_json(cell) : Json(cell.text);
   if (!cell.difference && cell.mark.empty()) return content;
   Json out{{"value", content}};
   if (cell.difference) out["difference"] = number(cell.difference);
