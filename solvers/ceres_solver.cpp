@@ -10,7 +10,6 @@
 #include <exception>
 #include <mutex>
 
-#include "solvers/levenberg_marquardt.hpp"
 #include "solvers/optimality.hpp"
 
 namespace odobench {
@@ -184,15 +183,6 @@ void update_free(Workspace& work, bool release) {
   work.free = std::move(free);
 }
 
-// Relative decrease of the Gauss-Newton model over the whole box: what a perfect bounded step would still gain.
-double predicted_decrease(const Vector& u, const NormalEquations& e) {
-  const Eigen::Index m = u.size();
-  Matrix h = e.jtj;
-  h.diagonal() += Vector::Constant(m, 1e-15 * std::max(h.diagonal().maxCoeff(), std::numeric_limits<double>::min()));
-  const Vector d = solve_box_quadratic(h, e.jtr, Vector::Constant(m, -1.0) - u, Vector::Constant(m, 1.0) - u);
-  return -(2.0 * e.jtr.dot(d) + d.dot(e.jtj * d)) / e.cost;
-}
-
 // Evaluates the derivatives at work.u unless they are there already; false when the driver says stop.
 bool refresh(Workspace& work) {
   if (!work.has_derivatives_at(work.u)) {
@@ -212,7 +202,7 @@ Outcome no_progress(const Workspace& work, const std::string& how, double cosine
   const double relative = work.e.cost * work.scale * work.scale;
   if (relative <= kExactFit)
     return {Termination::Converged, fmt::format("cost {:.2g} <= {:.2g} times its start: an exact fit", work.e.cost, kExactFit)};
-  const double gain = predicted_decrease(work.u, work.e);
+  const double gain = predicted_gain(work.u, work.e);
   return {gain <= kNoGain ? Termination::Converged : Termination::Stalled,
           fmt::format("{}; a bounded step would gain {:.2g} of the cost, projected gradient {:.2g}", how, gain, cosine)};
 }

@@ -37,8 +37,12 @@ class BoxProgram final : public Ipopt::TNLP {
   using Index = Ipopt::Index;
   using Number = Ipopt::Number;
 
-  BoxProgram(Run& run, bool gauss_newton, double scale, std::unique_lock<std::mutex>& lock)
-      : run_(run), gauss_newton_(gauss_newton), scale_(scale), lock_(lock) {}
+  BoxProgram(Run& run, const InteriorPointOptions& options, double scale, std::unique_lock<std::mutex>& lock)
+      : run_(run),
+        gauss_newton_(options.hessian != "lbfgs"),
+        corrected_(options.hessian == "corrected"),
+        scale_(scale),
+        lock_(lock) {}
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = static_cast<Index>(run_.dimension());
@@ -76,6 +80,7 @@ class BoxProgram final : public Ipopt::TNLP {
   bool eval_h(Index n, const Number* x, bool, Number factor, Index, const Number*, bool, Index, Index* rows, Index* columns,
               Number* values) override {
     if (values != nullptr && !derivatives(Eigen::Map<const Vector>(x, n))) return false;
+    if (values != nullptr && corrected_) correct();
     Index k = 0;
     for (Index i = 0; i < n; ++i)
       for (Index j = 0; j <= i; ++j, ++k) {
@@ -83,7 +88,7 @@ class BoxProgram final : public Ipopt::TNLP {
           rows[k] = i;
           columns[k] = j;
         } else {
-          values[k] = 2.0 * scale_ * factor * e_.jtj(i, j);
+          values[k] = 2.0 * scale_ * factor * (e_.jtj(i, j) + (corrected_ ? correction_(i, j) : 0.0));
         }
       }
     return true;
@@ -131,6 +136,26 @@ class BoxProgram final : public Ipopt::TNLP {
   }
 
  private:
+  // Secant estimate S of the part of half the Hessian that J'J leaves out, sum r_i (second derivatives of r_i), after
+  // Dennis, Gay, Welsch 1981 (NL2SOL): S is sized, then receives a symmetric rank-one update, so that S s = y,
+  // s the last step, y = change of J'r minus J'J s.
+  void correct() {
+    const Eigen::Index m = derivatives_at_.size();
+    if (correction_.size() == 0) correction_ = Matrix::Zero(m, m);
+    if (same(derivatives_at_, corrected_at_)) return;
+    if (corrected_at_.size() == m) {
+      const Vector s = derivatives_at_ - corrected_at_;
+      const Vector y = e_.jtr - corrected_jtr_ - e_.jtj * s;
+      const double now = s.dot(correction_ * s);
+      if (now != 0) correction_ *= std::min(1.0, std::abs(s.dot(y) / now));
+      const Vector miss = y - correction_ * s;
+      const double denominator = miss.dot(s);
+      if (std::abs(denominator) > 1e-8 * miss.norm() * s.norm()) correction_ += miss * miss.transpose() / denominator;
+    }
+    corrected_at_ = derivatives_at_;
+    corrected_jtr_ = e_.jtr;
+  }
+
   static bool same(const Vector& a, const Vector& b) { return a.size() == b.size() && (a.array() == b.array()).all(); }
 
   // Runs f outside the mutex; an exception is kept for rethrow(), since it must not pass through Ipopt.
@@ -146,11 +171,13 @@ class BoxProgram final : public Ipopt::TNLP {
   }
 
   Run& run_;
-  bool gauss_newton_;
+  bool gauss_newton_, corrected_;
   double scale_;
   std::unique_lock<std::mutex>& lock_;
   NormalEquations e_;
   Vector derivatives_at_, last_;
+  Matrix correction_;
+  Vector corrected_at_, corrected_jtr_;
   Index iterations_ = 0;
   double dual_infeasibility_ = 0, mu_ = 0;
   std::exception_ptr error_;
@@ -173,16 +200,6 @@ void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options) 
   list.SetStringValue("linear_solver", "mumps");
 }
 
-// Puts the coordinates that Ipopt left next to a bound on it, where -g points there.
-Vector on_bounds(const Vector& u, const Vector& half_gradient) {
-  Vector snapped = u;
-  for (Eigen::Index i = 0; i < u.size(); ++i) {
-    const double bound = u[i] < 0 ? -1.0 : 1.0;
-    if (std::abs(u[i] - bound) < 1e-4 && held_by_bound(bound, half_gradient[i])) snapped[i] = bound;
-  }
-  return snapped;
-}
-
 Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& program, const InteriorPointOptions& options) {
   const std::string numbers = fmt::format("dual infeasibility {:.2g}, barrier parameter {:.2g}, {} iterations",
                                           program.dual_infeasibility(), program.mu(), program.iterations());
@@ -203,7 +220,7 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& prog
 }  // namespace
 
 void InteriorPointOptions::bind(OptionBinder& binder) {
-  binder.choice("hessian", hessian, "second derivatives: 2 J'J, or limited-memory BFGS (needs only a gradient)", {"gauss-newton", "lbfgs"});
+  binder.choice("hessian", hessian, "second derivatives: 2 (J'J + secant correction), 2 J'J, or limited-memory BFGS (needs only a gradient)", {"corrected", "gauss-newton", "lbfgs"});
   binder.integer("memory", memory, "pairs kept by hessian=lbfgs", 1, 1000);
   binder.choice("mu_strategy", mu_strategy, "update of the barrier parameter", {"adaptive", "monotone"});
   binder.choice("nlp_scaling", nlp_scaling, "Ipopt's own scaling of the cost", {"none", "gradient-based"});
@@ -214,7 +231,7 @@ void InteriorPointOptions::bind(OptionBinder& binder) {
 std::string InteriorPoint::why_not(const Problem& problem) const {
   if (options_.hessian == "lbfgs") return problem.has_gradient() ? "" : "needs a gradient, the problem has none";
   if (problem.has_normal_equations()) return "";
-  return problem.has_gradient() ? "hessian=gauss-newton needs residuals with a Jacobian, the problem has only a gradient: use hessian=lbfgs"
+  return problem.has_gradient() ? fmt::format("hessian={} needs residuals with a Jacobian, the problem has only a gradient: use hessian=lbfgs", options_.hessian)
                                 : "needs residuals with a Jacobian, the problem has none";
 }
 
@@ -225,7 +242,7 @@ Outcome InteriorPoint::minimise(Run& run) const {
   if (cost == 0) return {Termination::Converged, "cost 0 at the start"};
 
   std::unique_lock<std::mutex> lock(ipopt_mutex());
-  const Ipopt::SmartPtr<BoxProgram> program = new BoxProgram(run, options_.hessian == "gauss-newton", 1.0 / std::abs(cost), lock);
+  const Ipopt::SmartPtr<BoxProgram> program = new BoxProgram(run, options_, 1.0 / std::abs(cost), lock);
   Ipopt::ApplicationReturnStatus status = Ipopt::Internal_Error;
   {
     const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
@@ -237,7 +254,7 @@ Outcome InteriorPoint::minimise(Run& run) const {
   if (run.stop()) return {};
   const Outcome outcome = outcome_of(status, *program, options_);
   if (program->last().size() > 0 && program->derivatives(program->last())) {
-    const Vector snapped = on_bounds(program->last(), program->equations().jtr);
+    const Vector snapped = put_on_bounds(program->last(), program->equations().jtr, 1e-4);
     lock.unlock();
     if (snapped != program->last()) run.cost(snapped);
     lock.lock();

@@ -18,6 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far below.
 constexpr double kStopValue = -1e200;
 constexpr double kBelowStopValue = -1e250;
+constexpr int kMostBrokenOff = 1000;
 struct LeaveStogo {};  // StoGO is C++ with automatic storage: an exception leaves it cleanly
 
 using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
@@ -51,8 +52,10 @@ class Objective {
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }
-  // Projected gradient of the scaled cost at the lowest point whose gradient was seen.
-  double residual_gradient() const { return gradient_at_.size() == 0 ? kInfinity : projected_gradient(gradient_at_, gradient_); }
+  bool has_gradient() const { return gradient_at_.size() > 0; }
+  // Gradient of the scaled cost at the lowest point where one was evaluated, and that point.
+  const Vector& gradient() const { return gradient_; }
+  const Vector& gradient_at() const { return gradient_at_; }
 
   static double call(unsigned n, const double* x, double* gradient, void* self) {
     return static_cast<Objective*>(self)->evaluate(n, x, gradient);
@@ -168,6 +171,50 @@ std::string in_words(nlopt_result code, const NloptOptions& options) {
   }
 }
 
+// One call of NLopt from the best point so far.
+nlopt_result start_once(Run& run, nlopt_opt handle, const Objective& objective, int evaluations) {
+  nlopt_set_maxeval(handle, evaluations);
+  Vector u = run.has_best() ? run.best() : run.start();
+  double value = 0;
+  nlopt_result code = NLOPT_FORCED_STOP;
+  try {
+    code = nlopt_optimize(handle, u.data(), &value);
+  } catch (const LeaveStogo&) {
+  }
+  objective.rethrow();
+  return code;
+}
+
+bool arrived(const Objective& objective, const NloptOptions& options) {
+  if (!objective.has_gradient()) return false;
+  const Vector u = put_on_bounds(objective.gradient_at(), objective.gradient(), options.xtol);
+  return projected_gradient(u, objective.gradient()) <= options.gradient_tolerance;
+}
+
+// NLopt's tolerances say that a method has stopped moving, not that it has arrived. Arrived is what shows a small
+// projected gradient, or where there are normal equations, a bounded step that would gain next to nothing; that
+// costs one evaluation more.
+Outcome judge(Run& run, const Objective& objective, const NloptOptions& options, const std::string& how) {
+  if (objective.has_gradient()) {
+    const Vector u = put_on_bounds(objective.gradient_at(), objective.gradient(), options.xtol);
+    const double size = projected_gradient(u, objective.gradient());
+    if (u != objective.gradient_at()) run.cost(u);
+    if (size <= options.gradient_tolerance)
+      return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} of the cost at the start ({})", size,
+                                                  options.gradient_tolerance, how)};
+  }
+  if (!run.problem().has_normal_equations() || !run.has_best()) return {Termination::Stalled, how + "; optimality is not known"};
+  const Vector u = run.best();
+  NormalEquations e;
+  run.normal_equations(u, e);
+  if (run.stop()) return {};
+  if (e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
+  const double gain = predicted_gain(u, e);
+  if (gain <= options.gain_tolerance)
+    return {Termination::Converged, fmt::format("a bounded step would gain {:.2g} <= {:.2g} of the cost ({})", gain, options.gain_tolerance, how)};
+  return {Termination::Stalled, fmt::format("{}; a bounded step would gain {:.2g} > {:.2g} of the cost", how, gain, options.gain_tolerance)};
+}
+
 }  // namespace
 
 void NloptOptions::bind(OptionBinder& binder) {
@@ -178,6 +225,7 @@ void NloptOptions::bind(OptionBinder& binder) {
     binder.number("gradient_tolerance", gradient_tolerance, "largest projected gradient, relative to the cost at the start, that counts as converged", 0, 1);
   if (!algorithm->global) {
     binder.integer("restarts", restarts, "further starts from the best point while they gain", 0, 1000);
+    binder.number("gain_tolerance", gain_tolerance, "predicted relative gain of a bounded step that counts as converged", 0, 1);
     binder.number("restart_gain", restart_gain, "relative gain of a start below which there is no further one", 0, 1);
   }
   if (algorithm->step) binder.number("step", step, "initial step in units of half the box (0: NLopt's choice)", 0, 2);
@@ -219,38 +267,26 @@ Outcome NloptSolver::minimise(Run& run) const {
     const int left = options_.evaluations - objective.evaluations();
     if (left <= 0)
       return {Termination::IterationLimit, fmt::format("{} evaluations >= limit {} of the method", objective.evaluations(), options_.evaluations)};
-    nlopt_set_maxeval(handle.get(), left);
-    Vector u = run.has_best() ? run.best() : run.start();
-    double value = 0;
-    nlopt_result code = NLOPT_FAILURE;
-    try {
-      code = nlopt_optimize(handle.get(), u.data(), &value);
-    } catch (const LeaveStogo&) {
-    }
-    objective.rethrow();
+    const nlopt_result code = start_once(run, handle.get(), objective, left);
     if (run.stop()) return {};
     if (code == NLOPT_INVALID_ARGS || code == NLOPT_OUT_OF_MEMORY) {
       const char* detail = nlopt_get_errmsg(handle.get());
       return {Termination::Failed, fmt::format("NLopt: {}{}{}", nlopt_result_to_string(code), detail ? ": " : "", detail ? detail : "")};
     }
-    if (code == NLOPT_MAXEVAL_REACHED) continue;  // the limit above
-    const std::string words = in_words(code, options_);
-    if (algorithm.global && !(algorithm.local && code < 0 && round < options_.restarts)) return {Termination::Stalled, words};
+    if (code == NLOPT_MAXEVAL_REACHED) {
+      if (objective.evaluations() >= options_.evaluations) continue;  // reported above
+      return {Termination::IterationLimit, fmt::format("{} evaluations: NLopt's own limit", objective.evaluations())};
+    }
+    // MLSL gives up when one of its local searches fails: it is sent on. Other global methods are done.
+    const bool broken_off = algorithm.local && code < 0 && round < kMostBrokenOff;
+    if (broken_off) continue;
+    if (algorithm.global) return {Termination::Stalled, in_words(code, options_)};
 
-    const double after = run.best_cost();
-    const double gain = (before - after) / std::abs(after);
-    before = after;
-    if (algorithm.gradient && objective.residual_gradient() <= options_.gradient_tolerance)
-      return {Termination::Converged, fmt::format("{}; projected gradient {:.2g} <= {:.2g} (relative) after {} restarts", words,
-                                                  objective.residual_gradient(), options_.gradient_tolerance, round)};
-    const bool settled = round > 0 && !(gain > options_.restart_gain);
-    if (!settled && round < options_.restarts) continue;
-    if (algorithm.gradient)
-      return {Termination::Stalled, fmt::format("{}; projected gradient {:.2g} > {:.2g} (relative), restart {} gained {:.2g}", words,
-                                                objective.residual_gradient(), options_.gradient_tolerance, round, gain)};
-    if (settled)
-      return {Termination::Converged, fmt::format("{}; restart {} gained {:.2g} <= {:.2g} of the cost", words, round, gain, options_.restart_gain)};
-    return {Termination::Stalled, fmt::format("{} after {} restarts, the last gained {:.2g} of the cost", words, round, gain)};
+    const double gain = before == run.best_cost() ? 0.0 : (before - run.best_cost()) / std::abs(run.best_cost());
+    before = run.best_cost();
+    const bool more = round < options_.restarts && (round == 0 || gain > options_.restart_gain);
+    if (more && !arrived(objective, options_)) continue;
+    return judge(run, objective, options_, fmt::format("{}, start {} gained {:.2g}", in_words(code, options_), round + 1, gain));
   }
 }
 
@@ -260,6 +296,7 @@ std::vector<SolverEntry> nlopt_entries() {
     NloptOptions defaults;
     defaults.algorithm = &row;
     if (row.gradient && !row.global) defaults.evaluations = 10000;
+    if (row.global) defaults.ftol = 0;  // one generation without progress is no reason to stop
     defaults.memory = 100;
     entries.push_back(make_entry<NloptSolver, NloptOptions>("nlopt:" + row.name, row.summary, row.stochastic, defaults));
   }

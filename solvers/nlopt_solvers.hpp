@@ -4,9 +4,10 @@
 // the parameters nor the scale of the cost matters (SLSQP stops at once on the raw calibration cost). A cost that is
 // not finite becomes a finite one above every cost seen. Budget, clock and interruption are the driver's.
 //
-// A local method that stops is started again from the best point, up to `restarts` times. With a gradient the stop
-// counts as converged when the projected gradient of the scaled cost is at most gradient_tolerance; without one when
-// a restart gains at most restart_gain of the cost. Everything else that ends by a tolerance is reported as stalled.
+// A local method that stops is started again from the best point while that gains more than restart_gain of the cost,
+// at most `restarts` times. NLopt's tolerances do not show optimality, so the end counts as converged only when the
+// projected gradient is at most gradient_tolerance of the cost at the start, or where the problem has normal equations,
+// when a bounded Gauss-Newton step would gain at most gain_tolerance of the cost (one evaluation). Else it is stalled.
 //
 // Random numbers: NLopt's generator is thread-local since 2.4 and is seeded here from the run's engine before it
 // starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and AGS
@@ -23,12 +24,13 @@ struct NloptOptions {
   const NloptAlgorithm* algorithm = nullptr;
   double xtol = 1e-10;
   double ftol = 1e-14;
-  double gradient_tolerance = 1e-9;
+  double gradient_tolerance = 1e-8;
+  double gain_tolerance = 1e-8;
   double restart_gain = 1e-8;
   double step = 0;
   int population = 0;
   int memory = 0;
-  int restarts = 5;
+  int restarts = 3;
   int evaluations = 100000;
   std::string local = "lbfgs";
   double local_xtol = 1e-8;
