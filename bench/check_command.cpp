@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
@@ -44,7 +45,8 @@ ExitCode check_command(const CheckOptions& options) {
 
 ExitCode report_command(const ReportOptions& options) {
   const Format format = parse_format(options.format);
-  print_tables(comparison_tables(read_all_records(options.runs)), format);
+  const std::vector<RunRecord> records = read_all_records(options.runs);
+  print_tables(comparison_tables(records, notes_of_best(records)), format);
   return ExitCode::Success;
 }
 

@@ -33,6 +33,8 @@ struct RunOptions {
 struct EvaluateOptions {
   std::string data;
   std::vector<std::string> parameters;  // files or names, as typed; empty: nominal
+  std::string tracks;                   // CSV file for the paths; empty: none
+  bool overwrite = false;
   std::string format = "console";
 };
 

@@ -12,6 +12,7 @@
 #include "bench/context.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
+#include "bench/tracks.hpp"
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
 #include "reports/calibration_tables.hpp"
@@ -137,6 +138,9 @@ std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std
 
 ExitCode evaluate_command(const EvaluateOptions& options) {
   const Format format = parse_format(options.format);
+  if (!options.tracks.empty() && !options.overwrite && std::filesystem::exists(options.tracks))
+    throw std::invalid_argument(
+        fmt::format("--tracks={}: it exists; choose another name or give --overwrite", options.tracks));
   const LoadedProblem loaded = load_calibration(options.data);
   std::vector<ParameterSet> sets;
   for (const std::string& source : split_sources(options.parameters))
@@ -153,6 +157,7 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
     warn_outside(loaded, set);
     records.push_back(evaluation_record(loaded, set.label, set.values, context));
   }
+  if (!options.tracks.empty()) write_file(options.tracks, tracks_csv(*loaded.calibration, sets));
   print_tables(evaluation_tables(records), format);
   return ExitCode::Success;
 }

@@ -59,7 +59,7 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
   return result;
 }
 
-std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& label) {
+std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& what) {
   const Identifiability id = identifiability(problem, x);
   std::string list;
   const auto n = static_cast<Eigen::Index>(id.parameters.size());
@@ -72,12 +72,12 @@ std::string identifiability_note(const Problem& problem, const ConstVectorRef& x
   }
   if (list.empty()) return {};
   return fmt::format(
-      "Barely determined by these recordings ({}): the singular values of the scaled Jacobian span {:.3g} .. "
+      "Barely determined ({}): the singular values of the scaled Jacobian span {:.3g} .. "
       "{:.2g}, and "
       "the relative standard deviation exceeds the half width of the box for {}. Trust the costs and errors "
       "more than "
       "these single parameters.",
-      label, id.singular_values[0], id.singular_values[n - 1], list);
+      what, id.singular_values[0], id.singular_values[n - 1], list);
 }
 
 }  // namespace odobench

@@ -24,6 +24,7 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
 
 // One sentence: spread of the singular values and the parameters whose relative standard deviation exceeds
 // half the width of their box; "" when every parameter is determined better than its box.
-std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& label);
+// `what` names the data and the point: "demo, at the result of lm".
+std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& what);
 
 }  // namespace odobench

@@ -6,10 +6,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "bench/context.hpp"
+#include "bench/identifiability.hpp"
 
 namespace odobench {
 namespace {
@@ -61,6 +64,11 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   if (result.usable()) {
     record.cost = result.cost;
     describe_point(loaded, result.x, record);
+    if (loaded.calibration) {
+      const std::string what = fmt::format("{}, at the result of {}", record.dataset, record.label);
+      const std::string note = identifiability_note(loaded.problem, result.x, what);
+      if (!note.empty()) record.notes.push_back(note);
+    }
   }
   record.cost_before_polish = result.cost_before_polish;
   record.evaluations = result.counts.total();
@@ -71,6 +79,19 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.seconds = result.seconds;
   for (const TraceEntry& t : result.trace) record.trace.push_back({t.evaluations, t.seconds, t.cost});
   return record;
+}
+
+std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records) {
+  std::map<std::pair<std::string, std::string>, const RunRecord*> best;
+  for (const RunRecord& r : records) {
+    if (r.kind != "run" || !r.cost) continue;
+    const RunRecord*& lowest = best[{r.problem, r.dataset}];
+    if (lowest == nullptr || *r.cost < *lowest->cost) lowest = &r;
+  }
+  std::vector<std::string> notes;
+  for (const auto& [group, record] : best)
+    notes.insert(notes.end(), record->notes.begin(), record->notes.end());
+  return notes;
 }
 
 RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "bench/cells.hpp"
 #include "bench/problem_factory.hpp"
@@ -14,6 +15,9 @@ namespace odobench {
 // bit, and the map of the unit box sends -1 and 1 to the bounds exactly.
 RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
                      const Result& result, const RunContext& context, const std::string& time_utc);
+
+// The notes of the lowest run of each problem and data set, for the tables.
+std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
 
 // J and error tables of given parameters (n, parameter units). Of a calibration or of any other problem.
 RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,7 +11,6 @@
 
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
-#include "bench/identifiability.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
@@ -73,20 +73,9 @@ class Recorder final : public CellWatcher {
   bool in_order_ = true;
 };
 
-const RunRecord* best_run(const std::vector<RunRecord>& records) {
-  const RunRecord* best = nullptr;
-  for (const RunRecord& r : records)
-    if (r.kind == "run" && r.cost && (best == nullptr || *r.cost < *best->cost)) best = &r;
-  return best;
-}
-
-std::vector<std::string> result_notes(const LoadedProblem& loaded, const std::vector<RunRecord>& records) {
-  const RunRecord* best = best_run(records);
-  if (best == nullptr || !loaded.calibration) return {};
-  Vector x(loaded.problem.dimension());
-  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = best->parameters[static_cast<std::size_t>(i)].value;
-  const std::string note = identifiability_note(loaded.problem, x, best->label);
-  return note.empty() ? std::vector<std::string>{} : std::vector<std::string>{note};
+bool any_result(const std::vector<RunRecord>& records) {
+  return std::any_of(records.begin(), records.end(),
+                     [](const RunRecord& r) { return r.kind == "run" && r.cost; });
 }
 
 CellPlan make_plan(const RunOptions& options, std::vector<std::string>& notes) {
@@ -126,7 +115,7 @@ ExitCode outcome(const RunOptions& options, const std::vector<RunRecord>& record
                      options.out.empty() ? "" : "; records are in " + options.out));
     return ExitCode::Interrupted;
   }
-  if (best_run(records) == nullptr) {
+  if (!any_result(records)) {
     warn("not one solver gave a result");
     return ExitCode::CheckFailed;
   }
@@ -169,7 +158,7 @@ ExitCode run_command(const RunOptions& options) {
   const bool interrupted = InterruptGuard::flag().load();
   for (RunRecord& r : recorder.records()) records.push_back(std::move(r));
 
-  const std::vector<Table> tables = comparison_tables(records, result_notes(loaded, records));
+  const std::vector<Table> tables = comparison_tables(records, notes_of_best(records));
   if (file) {
     // Cells end in an order that depends on the threads; the finished file does not.
     if (!recorder.in_order()) write_in_order(file->path(), records);

@@ -126,6 +126,8 @@ void read_outcome(const JsonView& view, RunRecord& r) {
   r.iterations = view.at("iterations").integer();
   r.seconds = view.at("seconds").number();
   view.at("trace").each_item([&](const JsonView& item) { r.trace.push_back(trace_point_from(item)); });
+  if (const auto notes = view.find("notes"))  // absent in records of other makers: none
+    notes->each_item([&](const JsonView& item) { r.notes.push_back(item.string()); });
   r.context = context_from(view.at("context"));
   r.time_utc = view.at("time_utc").string();
 }
@@ -159,6 +161,7 @@ json to_json(const RunRecord& r) {
            {"iterations", r.iterations},
            {"seconds", finite_or_null(r.seconds)},
            {"trace", list_of(r.trace)},
+           {"notes", r.notes},
            {"context", to_json(r.context)},
            {"time_utc", r.time_utc}};
   for (const auto& [key, value] : r.options) out["options"][key] = value;

@@ -73,6 +73,7 @@ struct RunRecord {
   std::int64_t iterations = 0;
   double seconds = 0;
   std::vector<TracePoint> trace;
+  std::vector<std::string> notes;  // remarks on this result, e.g. which parameters are barely determined
   RunContext context;
   std::string time_utc;  // ISO 8601 start of the run
 };
