@@ -130,6 +130,7 @@ Dataset load_dataset(const fs::path& set_json) {
   d.name = root.at("name").text();
   d.description = root.text_or_empty("description");
   d.robot = read_robot(root.at("robot"));
+  validate_robot(d.robot, set_json.string());
   for (const JsonNode& t : root.at("trajectories").elements()) d.trajectories.push_back(read_trajectory(t));
   const std::vector<JsonNode> recordings = root.at("recordings").elements();
   for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r));

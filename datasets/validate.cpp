@@ -14,13 +14,17 @@
 namespace odobench {
 namespace {
 
+void require(bool holds, const std::string& file, const std::string& path, const std::string& message) {
+  if (!holds) throw DataError(fmt::format("{}: {}: {}", file, path, message));
+}
+
 class Validator {
  public:
   Validator(const Dataset& dataset, const std::string& file) : d_(dataset), file_(file) {}
 
   void run() const {
     require(!d_.name.empty(), "/name", "found an empty text, expected a name");
-    check_robot();
+    validate_robot(d_.robot, file_);
     check_trajectories();
     check_recordings();
     check_known_parameters();
@@ -32,41 +36,12 @@ class Validator {
 
  private:
   void require(bool holds, const std::string& path, const std::string& message) const {
-    if (!holds) throw DataError(fmt::format("{}: {}: {}", file_, path, message));
+    odobench::require(holds, file_, path, message);
   }
   void require_new(std::set<std::string>& seen, const std::string& name, const std::string& path) const {
     require(!name.empty(), path, "found an empty text, expected a name");
     require(seen.insert(name).second, path,
             fmt::format("found \"{}\" a second time, expected every name once", name));
-  }
-
-  void check_robot() const {
-    const Robot& robot = d_.robot;
-    require(!robot.name.empty(), "/robot/name", "found an empty text, expected a name");
-    const Robot known = robot_4wis4wid();
-    require(robot.kinematics == known.kinematics, "/robot/kinematics",
-            fmt::format("found \"{}\", expected \"{}\"", robot.kinematics, known.kinematics));
-    require(
-        robot.parameters.size() == known.parameters.size(), "/robot/parameters",
-        fmt::format("found {} parameters, expected {}", robot.parameters.size(), known.parameters.size()));
-    for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
-      const RobotParameter& p = robot.parameters[i];
-      const std::string path = fmt::format("/robot/parameters/{}", i);
-      const RobotParameter& expected = known.parameters[i];
-      require(p.name == expected.name, path + "/name",
-              fmt::format("found \"{}\", expected \"{}\"", p.name, expected.name));
-      require(p.unit == expected.unit, path + "/unit",
-              fmt::format("found \"{}\", expected \"{}\"", p.unit, expected.unit));
-      require(std::isfinite(p.nominal) && std::isfinite(p.lower) && std::isfinite(p.upper), path,
-              fmt::format("found lower {}, nominal {}, upper {} of {}, expected finite numbers", p.lower,
-                          p.nominal, p.upper, p.name));
-      require(
-          p.lower <= p.upper, path,
-          fmt::format("found lower {} > upper {} of {}, expected lower <= upper", p.lower, p.upper, p.name));
-      require(p.lower <= p.nominal && p.nominal <= p.upper, path,
-              fmt::format("found nominal {} of {} outside [{}, {}], expected it inside", p.nominal, p.name,
-                          p.lower, p.upper));
-    }
   }
 
   void check_trajectories() const {
@@ -122,6 +97,36 @@ class Validator {
 };
 
 }  // namespace
+
+void validate_robot(const Robot& robot, const std::string& file) {
+  const auto require = [&](bool holds, const std::string& path, const std::string& message) {
+    odobench::require(holds, file, path, message);
+  };
+  require(!robot.name.empty(), "/robot/name", "found an empty text, expected a name");
+  const Robot known = robot_4wis4wid();
+  require(robot.kinematics == known.kinematics, "/robot/kinematics",
+          fmt::format("found \"{}\", expected \"{}\"", robot.kinematics, known.kinematics));
+  require(robot.parameters.size() == known.parameters.size(), "/robot/parameters",
+          fmt::format("found {} parameters, expected {}", robot.parameters.size(), known.parameters.size()));
+  for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
+    const RobotParameter& p = robot.parameters[i];
+    const std::string path = fmt::format("/robot/parameters/{}", i);
+    const RobotParameter& expected = known.parameters[i];
+    require(p.name == expected.name, path + "/name",
+            fmt::format("found \"{}\", expected \"{}\"", p.name, expected.name));
+    require(p.unit == expected.unit, path + "/unit",
+            fmt::format("found \"{}\", expected \"{}\"", p.unit, expected.unit));
+    require(std::isfinite(p.nominal) && std::isfinite(p.lower) && std::isfinite(p.upper), path,
+            fmt::format("found lower {}, nominal {}, upper {} of {}, expected finite numbers", p.lower,
+                        p.nominal, p.upper, p.name));
+    require(
+        p.lower <= p.upper, path,
+        fmt::format("found lower {} > upper {} of {}, expected lower <= upper", p.lower, p.upper, p.name));
+    require(p.lower <= p.nominal && p.nominal <= p.upper, path,
+            fmt::format("found nominal {} of {} outside [{}, {}], expected it inside", p.nominal, p.name,
+                        p.lower, p.upper));
+  }
+}
 
 void validate_dataset(const Dataset& dataset, const std::string& file) {
   Validator(dataset, file).run();

@@ -22,8 +22,9 @@ namespace {
 constexpr int kRecordings = 30;
 constexpr int kRepetitions = 5;
 constexpr std::size_t kDropped = 29;
-// How far the wheel signals may be extrapolated: more means that the two files do not belong together.
-constexpr std::int64_t kLongestExtrapolation_us = 1'000'000;
+// How far the wheel signals may be inter- and extrapolated: more means that the log has a hole, that a clock
+// was set, or that the two files do not belong together.
+constexpr std::int64_t kLongestGap_us = 1'000'000;
 
 // Sums by file name, and the line on which each stands.
 struct Sums {
@@ -83,7 +84,7 @@ class Importer {
     require_rows(wheels.time_us, 2, wheel_file);
     pair.moved_capture = increase(capture.time_us, capture_file);
     pair.moved_wheels = increase(wheels.time_us, wheel_file);
-    require_overlap(capture, wheels, wheel_file);
+    require_cover(capture, wheels, wheel_file);
     unwrap(capture.yaw);
 
     Recording& r = pair.recording;
@@ -142,18 +143,23 @@ class Importer {
     return repair.moved;
   }
 
-  static void require_overlap(const vitko2024::CaptureLog& capture, const vitko2024::WheelLog& wheels,
-                              const std::string& file) {
+  static void require_cover(const vitko2024::CaptureLog& capture, const vitko2024::WheelLog& wheels,
+                            const std::string& file) {
     const std::int64_t late = wheels.time_us.front() - capture.time_us.front();
     const std::int64_t early = capture.time_us.back() - wheels.time_us.back();
-    if (late > kLongestExtrapolation_us)
+    for (std::size_t k = 1; k < wheels.time_us.size(); ++k)
+      if (wheels.time_us[k] - wheels.time_us[k - 1] > kLongestGap_us)
+        throw DataError(fmt::format(
+            "{}:{}: found a stamp {} us after the one above it, expected at most {} us", file,
+            vitko2024::line_of_row(k), wheels.time_us[k] - wheels.time_us[k - 1], kLongestGap_us));
+    if (late > kLongestGap_us)
       throw DataError(
           fmt::format("{}:{}: found a first stamp {} us after the motion capture's, expected at most {} us",
-                      file, vitko2024::line_of_row(0), late, kLongestExtrapolation_us));
-    if (early > kLongestExtrapolation_us)
-      throw DataError(fmt::format(
-          "{}:{}: found a last stamp {} us before the motion capture's, expected at most {} us", file,
-          vitko2024::line_of_row(wheels.time_us.size() - 1), early, kLongestExtrapolation_us));
+                      file, vitko2024::line_of_row(0), late, kLongestGap_us));
+    if (early > kLongestGap_us)
+      throw DataError(
+          fmt::format("{}:{}: found a last stamp {} us before the motion capture's, expected at most {} us",
+                      file, vitko2024::line_of_row(wheels.time_us.size() - 1), early, kLongestGap_us));
   }
 
   fs::path folder_;
