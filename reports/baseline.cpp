@@ -202,6 +202,9 @@ Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& 
       entry.cost = row.shown->cost;
       if (row.kind == "run") entry.evaluations = row.shown->evaluations;
       entry.errors = row.errors;
+      std::sort(
+          entry.errors.begin(), entry.errors.end(),
+          [](const TrajectoryErrors& a, const TrajectoryErrors& b) { return a.trajectory < b.trajectory; });
       if (!row.errors.empty()) entry.totals = error_totals(row.errors);
       entry.tolerances = tolerances;
       baseline.entries.push_back(std::move(entry));

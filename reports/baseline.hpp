@@ -58,9 +58,9 @@ struct Baseline {
 // Throws std::runtime_error "file: /entries/3/errors/line_x/x/e_max: expected a number, found a string".
 Baseline read_baseline(const std::string& path);
 
-// One entry per label; of several runs with one label the median run by J, as in the tables.
-// Throws std::invalid_argument when there is no record, a tolerance is negative or not finite, or two results
-// have one name.
+// One entry per label, its trajectories in alphabetical order; of several runs with one label the median run
+// by J, as in the tables. Throws std::invalid_argument when there is no record, a tolerance is negative or
+// not finite, or two results have one name.
 Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& tolerances = {});
 
 // Text of the file, one error cell group per line so that a change shows as few changed lines; ends with a

@@ -3,10 +3,8 @@
 #include "reports/table.hpp"
 
 namespace odobench {
-namespace {
 
-// RFC 4180: quotes around fields with separators, quotes or line breaks; quotes inside doubled.
-std::string quoted(const std::string& text) {
+std::string csv_field(const std::string& text) {
   const bool plain = text.find_first_of(",\"\r\n") == std::string::npos &&
                      (text.empty() || (text.front() != ' ' && text.back() != ' '));
   if (plain) return text;
@@ -14,6 +12,8 @@ std::string quoted(const std::string& text) {
   for (char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + "\"";
 }
+
+namespace {
 
 // The shortest text that reads back as the same bits.
 std::string exact(const std::optional<double>& value) {
@@ -38,7 +38,7 @@ std::string line_of(const std::vector<std::string>& fields) {
   std::string line;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     if (k > 0) line += ',';
-    line += quoted(fields[k]);
+    line += csv_field(fields[k]);
   }
   return line + "\r\n";
 }

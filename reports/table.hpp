@@ -86,4 +86,7 @@ std::string render_csv(const std::vector<Table>& tables);
 std::string render_json(const std::vector<Table>& tables);
 std::string render_latex(const std::vector<Table>& tables);
 
+// RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside doubled.
+std::string csv_field(const std::string& text);
+
 }  // namespace odobench
