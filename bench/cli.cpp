@@ -173,6 +173,9 @@ ExitCode dispatch(std::vector<std::string> words) {
     verb.app->set_version_flag("--version", version_line);
   }
   complete_verb(words, verbs);
+  for (const std::string& word : words)  // CLI11 would take the next word for its value
+    if (word.rfind("--", 0) == 0 && word.find('=') == word.size() - 1)
+      throw std::invalid_argument(fmt::format("{}: a value is missing after '='", word));
   std::reverse(words.begin(), words.end());  // the order CLI11 takes a vector in
   try {
     app.parse(words);
