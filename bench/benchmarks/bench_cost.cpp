@@ -1,7 +1,7 @@
 // Speed of the calibration cost: direct form against the structured form, every vector width this processor has.
 //   bench_cost [--data=set.json] [Google Benchmark's flags]      without --data: the demo set
-// Counter `x_direct` = time of one direct evaluation / time of this one per candidate, measured in this process;
-// `ns/sample` = time per sample and candidate.
+// Counters: x_direct = time of one direct evaluation / time of this one per candidate, measured in this process;
+// ns_per_sample = time per sample and candidate.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -45,18 +45,21 @@ Setting load_setting(const std::string& path) {
   return s;
 }
 
-void report(benchmark::State& state, const Setting& s, double candidates) {
-  using benchmark::Counter;
-  state.counters["ns/sample"] = Counter(s.samples * candidates * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
-  state.counters["x_direct"] = Counter(s.direct_seconds * candidates, Counter::kIsIterationInvariantRate);
-}
-
 void register_all(const Setting& s) {
   const auto add = [&s](const std::string& name, double candidates, auto body) {
     benchmark::RegisterBenchmark(name.c_str(), [&s, candidates, body](benchmark::State& state) {
-      for (auto _ : state) body();
-      report(state, s, candidates);
-    })->Unit(benchmark::kMillisecond);
+      double total = 0;
+      for (auto _ : state) {
+        const auto begin = std::chrono::steady_clock::now();
+        body();
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        state.SetIterationTime(seconds);
+        total += seconds;
+      }
+      const double each = total / static_cast<double>(state.iterations()) / candidates;
+      state.counters["ns_per_sample"] = 1e9 * each / s.samples;
+      state.counters["x_direct"] = s.direct_seconds / each;
+    })->Unit(benchmark::kMillisecond)->UseManualTime();
   };
   add("direct_cost", 1, [&s] { benchmark::DoNotOptimize(direct::cost(s.recordings, s.nominal)); });
   const auto problem = std::make_shared<const CalibrationProblem>(s.parameters, s.recordings);

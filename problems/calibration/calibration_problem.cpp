@@ -41,6 +41,10 @@ void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recor
       throw std::invalid_argument(fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
 }
 
+Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::size_t k) {
+  return {q.x[k] - recording.x[k], q.y[k] - recording.y[k], q.theta[k] - recording.theta[k]};
+}
+
 }  // namespace
 
 CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings)
@@ -77,33 +81,33 @@ void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
   Eigen::Index row = 0;
   for (const Recording& recording : recordings_) {
     const PoseTrack q = direct::integrate(recording, z);
-    for (std::size_t k = 1; k < recording.size(); ++k) {
-      r[row++] = q.x[k] - recording.x[k];
-      r[row++] = q.y[k] - recording.y[k];
-      r[row++] = q.theta[k] - recording.theta[k];
-    }
+    for (std::size_t k = 1; k < recording.size(); ++k, row += 3)
+      r.segment<3>(row) = pose_error(q, recording, k);
   }
 }
 
 void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const {
-  residuals(z, r);
   const LinearMatrix chain = linear_jacobian(z);
   Eigen::Index row = 0;
   for (const Recording& recording : recordings_) {
     const PoseTrack q = direct::integrate(recording, z);
+    // Derivatives of the pose with respect to the linear parameters (r, P, Q).
     LinearVector gx = LinearVector::Zero(), gy = LinearVector::Zero(), gt = LinearVector::Zero();
     for (std::size_t k = 0; k + 1 < recording.size(); ++k, row += 3) {
       const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+      const double cos_theta = std::cos(q.theta[k]), sin_theta = std::sin(q.theta[k]);
       gx -= (q.y[k + 1] - q.y[k]) * gt;
       gy += (q.x[k + 1] - q.x[k]) * gt;
       for (std::size_t i = 0; i < kWheelCount; ++i) {
         const auto w = static_cast<Eigen::Index>(i);
-        const double turn = 0.25 * dt * recording.wheel_speed[i][k], d = recording.steering[i][k];
-        gx[w] += turn * std::cos(d + q.theta[k]);
-        gy[w] += turn * std::sin(d + q.theta[k]);
-        gt[4 + w] -= turn * std::cos(d);
-        gt[8 + w] += turn * std::sin(d);
+        const double turn = 0.25 * dt * recording.wheel_speed[i][k];
+        const double c = turn * std::cos(recording.steering[i][k]), s = turn * std::sin(recording.steering[i][k]);
+        gx[w] += cos_theta * c - sin_theta * s;
+        gy[w] += sin_theta * c + cos_theta * s;
+        gt[4 + w] -= c;
+        gt[8 + w] += s;
       }
+      r.segment<3>(row) = pose_error(q, recording, k + 1);
       j.row(row) = gx.transpose() * chain;
       j.row(row + 1) = gy.transpose() * chain;
       j.row(row + 2) = gt.transpose() * chain;

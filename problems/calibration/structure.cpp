@@ -13,16 +13,20 @@ using kernel::kStreams;
 // Steps of a segment: long enough to amortise its start, short enough for a block to stay in the second-level cache.
 constexpr long kSegmentSteps = 256;
 
-// (C_1..C_4, S_1..S_4) of increment k.
-HeadingVector increment(const Recording& recording, std::size_t k) {
-  const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
-  HeadingVector v;
-  for (std::size_t i = 0; i < kWheelCount; ++i) {
-    const double turn = 0.25 * dt * recording.wheel_speed[i][k];
-    v[static_cast<Eigen::Index>(i)] = turn * std::cos(recording.steering[i][k]);
-    v[static_cast<Eigen::Index>(i + 4)] = turn * std::sin(recording.steering[i][k]);
+// (C_1..C_4, S_1..S_4), one column per increment.
+Increments increments_of(const Recording& recording) {
+  Increments list(kHeading, static_cast<Eigen::Index>(recording.size()) - 1);
+  for (Eigen::Index c = 0; c < list.cols(); ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+    for (std::size_t i = 0; i < kWheelCount; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double turn = 0.25 * dt * recording.wheel_speed[i][k];
+      list(row, c) = turn * std::cos(recording.steering[i][k]);
+      list(row + 4, c) = turn * std::sin(recording.steering[i][k]);
+    }
   }
-  return v;
+  return list;
 }
 
 // dtheta/d(P, Q) of an increment: (-C, S).
@@ -66,14 +70,19 @@ CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordi
   heading_.origin = linear_parameters(nominal).tail<kHeading>();
   heading_.a.setZero();
   heading_.b.setZero();
+  std::size_t samples = 0;
+  for (const Recording& recording : recordings) samples += recording.size() - 1;
+  data_.reserve(samples * kStreams);
   for (const Recording& recording : recordings) {
-    plan_recording(recording);
-    add_heading(recording);
+    const Increments steps = increments_of(recording);
+    largest_step_ = largest_step_.cwiseMax(steps.cwiseAbs().rowwise().maxCoeff());
+    plan_recording(recording, steps);
+    add_heading(recording, steps);
   }
 }
 
-void CalibrationStructure::plan_recording(const Recording& recording) {
-  const long increments = static_cast<long>(recording.size()) - 1;
+void CalibrationStructure::plan_recording(const Recording& recording, const Increments& list) {
+  const auto increments = static_cast<long>(list.cols());
   const int w = kernel_.width;
   const long block_count = std::max(1L, increments / (w * kSegmentSteps));
   const long steps = increments / (w * block_count);
@@ -89,13 +98,12 @@ void CalibrationStructure::plan_recording(const Recording& recording) {
       plan.segments.push_back({length, heading, recording.x[first], recording.y[first]});
       for (long k = 0; k < length; ++k, ++next) {
         const auto sample = static_cast<std::size_t>(next);
-        const HeadingVector cs = increment(recording, sample);
+        const HeadingVector cs = list.col(next);
         double* row = &data_[block.data + static_cast<std::size_t>(k * kStreams * width + lane)];
         for (Eigen::Index j = 0; j < kHeading; ++j) row[j * width] = cs[j];
         row[8 * width] = recording.x[sample + 1] - recording.x[first];
         row[9 * width] = recording.y[sample + 1] - recording.y[first];
         heading += heading_increment(cs);
-        largest_step_ = largest_step_.cwiseMax(cs.cwiseAbs());
       }
     }
     plan.blocks.push_back(block);
@@ -106,22 +114,21 @@ void CalibrationStructure::plan_recording(const Recording& recording) {
   plans_.push_back(std::move(plan));
 }
 
-void CalibrationStructure::add_heading(const Recording& recording) {
-  using Wide = Eigen::Matrix<long double, kHeading, 1>;
-  Eigen::Matrix<long double, kHeading, kHeading> a = decltype(a)::Zero();
-  Wide b = Wide::Zero(), f = Wide::Zero();
-  long double c = 0;
-  for (std::size_t k = 1; k < recording.size(); ++k) {
-    f += heading_increment(increment(recording, k - 1)).cast<long double>();
-    const long double e = static_cast<long double>(recording.theta[0]) - static_cast<long double>(recording.theta[k]) +
-                          f.dot(heading_.origin.cast<long double>());
-    a += f * f.transpose();
-    b += f * e;
-    c += e * e;
+void CalibrationStructure::add_heading(const Recording& recording, const Increments& list) {
+  // (F, e) stacked: one rank-1 update per sample gives A, b and c.
+  using Stacked = Eigen::Matrix<double, kHeading + 1, 1>;
+  Eigen::Matrix<double, kHeading + 1, kHeading + 1> sum = decltype(sum)::Zero();
+  HeadingVector f = HeadingVector::Zero();
+  for (Eigen::Index k = 0; k < list.cols(); ++k) {
+    f += heading_increment(list.col(k));
+    const double turned = recording.theta[static_cast<std::size_t>(k) + 1] - recording.theta[0];
+    Stacked v;
+    v << f, f.dot(heading_.origin) - turned;
+    sum += v * v.transpose();
   }
-  heading_.a += a.cast<double>();
-  heading_.b += b.cast<double>();
-  heading_.c += static_cast<double>(c);
+  heading_.a += sum.topLeftCorner<kHeading, kHeading>();
+  heading_.b += sum.topRightCorner<kHeading, 1>();
+  heading_.c += sum(kHeading, kHeading);
 }
 
 bool CalibrationStructure::needs_exact_rotation(const LinearVector& s) const {

@@ -11,6 +11,7 @@ namespace odobench {
 using LinearVector = Eigen::Matrix<double, kernel::kLinear, 1>;
 using LinearMatrix = Eigen::Matrix<double, kernel::kLinear, kernel::kLinear>;
 using HeadingVector = Eigen::Matrix<double, kernel::kHeading, 1>;
+using Increments = Eigen::Matrix<double, kernel::kHeading, Eigen::Dynamic>;
 using HeadingMatrix = Eigen::Matrix<double, kernel::kHeading, kernel::kHeading>;
 
 // s(z) = (r, P, Q) of kernel.hpp and its Jacobian ds/dz (12 x 12), z in the order a, b, r.
@@ -58,8 +59,8 @@ class CalibrationStructure {
   double recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const;
   void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost, LinearVector& jtr,
                   LinearMatrix& jtj) const;
-  void plan_recording(const Recording& recording);
-  void add_heading(const Recording& recording);
+  void plan_recording(const Recording& recording, const Increments& list);
+  void add_heading(const Recording& recording, const Increments& list);
 
   kernel::Kernel kernel_;
   HeadingForm heading_;
