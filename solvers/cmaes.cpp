@@ -60,7 +60,7 @@ DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOption
 class Restarts {
  public:
   Restarts(const CmaesOptions& options, Eigen::Index m) : options_(options), m_(m) {
-    base_ = options.population > 0 ? options.population : 4 + static_cast<int>(3.0 * std::log(static_cast<double>(m)));
+    base_ = options.population > 0 ? options.population : 4 + static_cast<int>(5.0 * std::log(static_cast<double>(m)));
     large_ = base_;
   }
   DescentSetting first(const Vector& start) const { return limited({start, options_.sigma, base_, 0}); }
@@ -100,7 +100,7 @@ class Restarts {
 }  // namespace
 
 void CmaesOptions::bind(OptionBinder& binder) {
-  binder.integer("population", population, "samples per generation of the first descent, 0: 4 + 3 ln(parameters)", 0, 1 << 20);
+  binder.integer("population", population, "samples per generation of the first descent, 0: 4 + 5 ln(parameters)", 0, 1 << 20);
   binder.number("sigma", sigma, "first standard deviation, half-widths of the box", 1e-12, 10);
   binder.flag("active", active, "negative weights for the worse half of the samples");
   binder.choice("strategy", strategy, "how restarts choose their population", {"ipop", "bipop"});

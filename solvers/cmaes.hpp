@@ -15,15 +15,15 @@
 namespace odobench {
 
 struct CmaesOptions {
-  int population = 0;   // lambda of the first descent, 0: 4 + 3 ln m
-  double sigma = 0.5;   // first step, half-widths of the box
+  int population = 0;   // lambda of the first descent, 0: 4 + 5 ln m
+  double sigma = 0.2;   // first step, half-widths of the box
   bool active = true;   // negative weights for the worse half
   std::string strategy = "ipop";
   int restarts = 9;
   int generations = 0;  // per descent, 0: 100 + 50 (m + 3)^2 / sqrt(lambda)
   double cost_tolerance = 1e-12;
   double step_tolerance = 1e-11;
-  double boundary = 0.1;  // width of the bent zone of the boundary map
+  double boundary = 0.01;  // width of the bent zone of the boundary map
   void bind(OptionBinder& binder);
   void validate() const;
 };
