@@ -93,6 +93,7 @@ TEST(CliErrors, Options) {
   expect_refusal({"--seed=-1"}, kUsage, {"--seed=-1"});
   expect_refusal({"--seed=1", "--seed=2"}, kUsage, {"--seed"});
   expect_refusal({"--seed"}, kUsage, {"--seed"});
+  expect_refusal({"--data=", "--solver=lm"}, kUsage, {"--data=: a value is missing"});
   expect_refusal({"--target=nan"}, kUsage, {"--target=nan: expected a finite number"});
   expect_refusal({"--start=middle"}, kUsage, {"--start=middle: expected nominal or random"});
   expect_refusal({"--format=xml"}, kUsage, {"xml", "latex"});
