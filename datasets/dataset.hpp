@@ -1,5 +1,6 @@
 // A data set: one robot, its trajectories and the recordings made of them, with where they came from.
-// On disk it is a set.json (docs/data_format.md) that refers to recording files beside it or holds them inline.
+// On disk it is a set.json (docs/data_format.md) that refers to recording files beside it or holds them
+// inline.
 #pragma once
 
 #include <filesystem>
@@ -38,9 +39,9 @@ struct SourceFile {
 };
 
 struct Provenance {
-  std::string source;       // who recorded it, where it was published
-  std::string licence;      // "none stated", "MIT", ...
-  std::string made_by;      // the command that made the set
+  std::string source;   // who recorded it, where it was published
+  std::string licence;  // "none stated", "MIT", ...
+  std::string made_by;  // the command that made the set
   std::vector<SourceFile> files;
 };
 
@@ -59,15 +60,20 @@ struct Dataset {
   std::vector<Recording> recordings;
   std::vector<NamedParameters> known_parameters;
   Provenance provenance;
-  std::vector<std::string> notes;  // what the import repaired, counted: "3 stamps moved by 1 us in recording line_x_2"
+  // What the import repaired, counted: "3 stamps moved to 1 us after their predecessor in recording
+  // line_x_2".
+  std::vector<std::string> notes;
 };
 
-// Reads set.json and everything it refers to; checks schema version, sums, lengths, finiteness, strictly increasing
-// stamps, known trajectory names, lower <= nominal <= upper. Throws DataError with file:line (or file and JSON path).
+// Reads set.json and everything it refers to; checks schema version, sums, lengths, finiteness, strictly
+// increasing stamps, known trajectory names, lower <= nominal <= upper. Throws DataError with file:line (or
+// file and JSON path).
 Dataset load_dataset(const std::filesystem::path& set_json);
 
-// Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings" beside it.
-// Everything is written to temporary names and renamed when complete. Throws DataError when it cannot be written.
-void save_dataset(const Dataset& dataset, const std::filesystem::path& set_json, bool inline_recordings = false);
+// Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings"
+// beside it. Everything is written to temporary names and renamed when complete. Throws DataError when it
+// cannot be written.
+void save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
+                  bool inline_recordings = false);
 
 }  // namespace odobench

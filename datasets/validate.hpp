@@ -14,8 +14,9 @@ namespace odobench {
 // upper, all finite; at least one recording; ids are of letters, digits, '_', '-', '.' (they become file
 // names); recordings refer to a trajectory of the set; repetitions count from 1 and occur once per
 // trajectory; known parameters have one finite value per robot parameter; sums are 64 hexadecimal digits.
+void validate_dataset(const Dataset& dataset, const std::string& file);
+
 // The robot's part of it alone, for a reader that needs the names of the parameters before it has the rest.
 void validate_robot(const Robot& robot, const std::string& file);
-void validate_dataset(const Dataset& dataset, const std::string& file);
 
 }  // namespace odobench

@@ -1,0 +1,59 @@
+// Files written whole or not at all, their sums, and the matchers that the tests of the data room use.
+#include "datasets/file_io.hpp"
+
+#include <gtest/gtest.h>
+
+#include "datasets/sha256.hpp"
+#include "tests/support/data_error.hpp"
+#include "tests/support/run_process.hpp"
+#include "tests/support/small_dataset.hpp"
+
+namespace odobench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::everything_in;
+using testing::says;
+using testing::TemporaryFolder;
+
+TEST(FileIo, WritesWholeFilesAndCreatesFolders) {
+  const TemporaryFolder folder;
+  const std::string bytes("a\0b\r\n", 5);
+  write_file(folder / "deep/er/file", bytes);
+  EXPECT_EQ(read_file(folder / "deep/er/file"), bytes);
+  write_file(folder / "deep/er/file", "");
+  EXPECT_EQ(read_file(folder / "deep/er/file"), "");
+  EXPECT_EQ(everything_in(folder.path()), (std::vector<std::string>{"deep", "er", "file"}));
+  EXPECT_GT(read_file("/proc/self/status").size(), 100u);  // states a size of 0
+}
+
+TEST(FileIo, AnAbandonedTransactionLeavesNothing) {
+  const TemporaryFolder folder;
+  {
+    FileTransaction files;
+    files.add(folder / "a/one", "1");
+    files.add(folder / "two", "2");
+    EXPECT_FALSE(fs::exists(folder / "a/one"));
+  }
+  EXPECT_TRUE(everything_in(folder.path()).empty());
+}
+
+TEST(Sha256, StandardVectors) {
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  const TemporaryFolder folder;
+  EXPECT_EQ(sha256_of_file(folder.file("abc", "abc")), sha256("abc"));
+  EXPECT_FALSE(is_sha256(std::string(63, 'a')));
+  EXPECT_FALSE(is_sha256(std::string(64, 'A')));
+  EXPECT_TRUE(is_sha256(std::string(64, 'a')));
+}
+
+TEST(DataErrorMatchers, CanFail) {
+  EXPECT_FALSE(says("", {}));
+  EXPECT_FALSE(says("two\nlines", {}));
+  EXPECT_FALSE(says("one line", {"two"}));
+  EXPECT_TRUE(says("one line", {"one", "line"}));
+}
+
+}  // namespace
+}  // namespace odobench
