@@ -25,7 +25,7 @@ Table difficult_table() {
   table.id = "difficult";
   table.title = "A, \"B\" & 50 % of a_b";
   Column name{"set", "set", "", "", "", Align::Left};
-  Column value{"e_max", "e_θ,max", "m", "$e_{\\theta,\\max}$"};
+  Column value{"e_max", "e_θ,max", "m", "$e_{\\theta,\\max}$", ""};
   value.mark_name = "bound";
   Column note{"note", "note", "", "", "", Align::Left};
   table.columns = {name, value, note};
