@@ -9,9 +9,10 @@
 
 namespace odobench {
 
-// One row per recording, parameter set and sample, in this order: recording, parameters (the set's label), time_s [s],
-// x, y [m], theta [rad] by odometry from the parameters, x_ref, y_ref, theta_ref by motion capture. Numbers are the
-// shortest that read back as the same bits; lines end in \n; fields are quoted where RFC 4180 wants it.
+// One row per recording, parameter set and sample, in this order: recording, parameters (the set's label),
+// time_s [s], x, y [m], theta [rad] by odometry from the parameters, x_ref, y_ref, theta_ref by motion
+// capture. Numbers are the shortest that read back as the same bits; lines end in \n; fields are quoted where
+// RFC 4180 wants it.
 std::string tracks_csv(const CalibrationProblem& problem, const std::vector<ParameterSet>& sets);
 
 }  // namespace odobench

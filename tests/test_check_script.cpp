@@ -1,75 +1,53 @@
-// scripts/check.sh must fail, and say where, for each kind of violation it looks for: planted one by one in a small tree.
+// scripts/check.sh must fail, and say where, for each kind of violation it looks for: planted one by one in a
+// small tree.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "tests/support/run_process.hpp"
+
+namespace odobench::testing {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output;
-};
-
-Outcome run_shell(const std::string& command) {
-  Outcome outcome;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (!pipe) return outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.output.append(buffer.data(), count);
-  }
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-  return outcome;
+ProcessResult check_script(const fs::path& root) {
+  return Process({ODOBENCH_SOURCE_DIR "/scripts/check.sh", root.string()}).wait();
 }
 
-// A checkout in miniature, without violations, deleted at the end.
+// A checkout in miniature, without violations.
 class MiniatureTree {
  public:
   MiniatureTree() {
-    std::string name = (fs::temp_directory_path() / "odobench_check_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot create " + name);
-    root_ = name;
-    fs::copy_file(fs::path(ODOBENCH_SOURCE_DIR) / ".clang-format", root_ / ".clang-format");
+    fs::copy_file(fs::path(ODOBENCH_SOURCE_DIR) / ".clang-format", folder_ / ".clang-format");
     write("CMakeLists.txt", "project(miniature)  # never -ffast-math\n");
     write("datasets/recording.hpp", "#pragma once\n");
     write("problems/problem.hpp", "// A comment first.\n#pragma once\n#include \"datasets/recording.hpp\"\n");
     write("solvers/solver.hpp", "#pragma once\n#include \"problems/problem.hpp\"\n");
     write("reports/record.hpp", "#pragma once\n#include <string>\n");
-    write("bench/main.cpp", "#include \"reports/record.hpp\"\n#include \"solvers/solver.hpp\"\nint main() {}\n");
+    write("bench/main.cpp",
+          "#include \"reports/record.hpp\"\n#include \"solvers/solver.hpp\"\nint main() {}\n");
   }
-  ~MiniatureTree() { fs::remove_all(root_); }
-  MiniatureTree(const MiniatureTree&) = delete;
-  MiniatureTree& operator=(const MiniatureTree&) = delete;
-
   void write(const std::string& path, const std::string& text) const {
-    fs::create_directories((root_ / path).parent_path());
-    std::ofstream(root_ / path) << text;
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << text;
   }
-  Outcome check() const {
-    return run_shell("'" ODOBENCH_SOURCE_DIR "/scripts/check.sh' '" + root_.string() + "'");
-  }
+  ProcessResult check() const { return check_script(folder_.path()); }
 
  private:
-  fs::path root_;
+  TemporaryFolder folder_;
 };
 
 struct Violation {
   std::string name, path, text, expected;
 };
-void PrintTo(const Violation& violation, std::ostream* out) { *out << violation.name; }
+void PrintTo(const Violation& violation, std::ostream* out) {
+  *out << violation.name;
+}
 
 const std::vector<Violation> kViolations = {
     {"DatasetsIncludeProblems", "datasets/reader.hpp", "#pragma once\n#include \"problems/problem.hpp\"\n",
@@ -90,7 +68,8 @@ const std::vector<Violation> kViolations = {
      "solvers/method.cpp:1: includes \"solver.hpp\": write the path from the repository root"},
     {"AngleBrackets", "solvers/method.cpp", "#include <bench/options.hpp>\n",
      "solvers/method.cpp:1: includes \"bench/options.hpp\": write our own headers in quotes"},
-    {"NoPragmaOnce", "solvers/method.hpp", "// A comment.\nint f();\n", "solvers/method.hpp:1: no #pragma once"},
+    {"NoPragmaOnce", "solvers/method.hpp", "// A comment.\nint f();\n",
+     "solvers/method.hpp:1: no #pragma once"},
     {"NativeCode", "CMakeLists.txt", "add_compile_options(-O3\n  -march=native)\n",
      "CMakeLists.txt:2: -march=native is not allowed"},
     {"FastMath", "cmake/flags.cmake", "set(CMAKE_CXX_FLAGS \"-ffast-math\")\n",
@@ -104,16 +83,16 @@ const std::vector<Violation> kViolations = {
 class CheckScriptViolation : public ::testing::TestWithParam<Violation> {};
 
 TEST(CheckScript, PassesWithoutViolation) {
-  const Outcome outcome = MiniatureTree().check();
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  const ProcessResult outcome = MiniatureTree().check();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
 }
 
 TEST_P(CheckScriptViolation, FailsAndSaysWhere) {
   const MiniatureTree tree;
   tree.write(GetParam().path, GetParam().text);
-  const Outcome outcome = tree.check();
+  const ProcessResult outcome = tree.check();
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.output.find(GetParam().expected), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.out.find(GetParam().expected), std::string::npos) << outcome.out;
 }
 INSTANTIATE_TEST_SUITE_P(Planted, CheckScriptViolation, ::testing::ValuesIn(kViolations),
                          [](const auto& violation) { return violation.param.name; });
@@ -123,25 +102,30 @@ TEST(CheckScript, FailsForALongFile) {
   std::string text;
   for (int line = 0; line < 451; ++line) text += "// A line.\n";
   tree.write("solvers/method.cpp", text);
-  const Outcome outcome = tree.check();
+  const ProcessResult outcome = tree.check();
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.output.find("solvers/method.cpp:451: longer than 450 lines"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.out.find("solvers/method.cpp:451: longer than 450 lines"), std::string::npos)
+      << outcome.out;
 }
 
 TEST(CheckScript, FailsForUnformattedCodeOrSaysThatItCannotLook) {
   const MiniatureTree tree;
   tree.write("solvers/method.cpp", "int   f( );\n");
-  const Outcome outcome = tree.check();
-  if (outcome.output.find("check: format skipped") != std::string::npos) {
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  const ProcessResult outcome = tree.check();
+  if (outcome.out.find("check: format skipped") != std::string::npos) {
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
     GTEST_SKIP() << "clang-format 14 is not installed";
   }
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.output.find("solvers/method.cpp:1:"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.out.find("solvers/method.cpp:1:"), std::string::npos) << outcome.out;
 }
 
 TEST(CheckScript, FailsWhereThereIsNoSource) {
-  EXPECT_NE(run_shell("'" ODOBENCH_SOURCE_DIR "/scripts/check.sh' /nonexistent").exit_code, 0);
+  const TemporaryFolder empty;
+  const ProcessResult outcome = check_script(empty.path());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.err.find("no sources"), std::string::npos) << outcome.err;
 }
 
 }  // namespace
+}  // namespace odobench::testing

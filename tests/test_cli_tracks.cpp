@@ -82,13 +82,14 @@ TEST(Tracks, SayWhenTheyCannotBeWritten) {
 
 TEST(Tracks, QuoteLabelsWithCommas) {
   const TemporaryFolder folder;
-  const std::string parameters =
-      folder.file("mine.json", R"({"name": "mine, first", "a1": 0.1125, "a2": -0.1125, "a3": -0.1125, "a4": 0.1125,
+  const std::string parameters = folder.file(
+      "mine.json", R"({"name": "mine, first", "a1": 0.1125, "a2": -0.1125, "a3": -0.1125, "a4": 0.1125,
         "b1": 0.1125, "b2": 0.1125, "b3": -0.1125, "b4": -0.1125,
         "r1": 0.0254, "r2": 0.0254, "r3": 0.0254, "r4": 0.0254})");
   const std::string file = folder / "tracks.csv";
   ASSERT_EQ(run_bench({"evaluate", "--parameters=" + parameters, "--tracks=" + file}).exit_code, 0);
-  EXPECT_EQ(lines(content(file)).at(1).rfind("line_x_1,\"mine, first\",0,", 0), 0u) << lines(content(file)).at(1);
+  EXPECT_EQ(lines(content(file)).at(1).rfind("line_x_1,\"mine, first\",0,", 0), 0u)
+      << lines(content(file)).at(1);
 }
 
 }  // namespace
