@@ -61,6 +61,7 @@ class Dispatcher {
     const std::string begin = utc_now();
     const Problem own = problem_;  // a copy has evaluation counts of its own
     const Result result = solve(own, cell.solver, start, options);
+    if (result.termination == Termination::Interrupted && !result.usable()) return;  // as good as not begun
     watcher_.finished(index, result, begin);
   }
 

@@ -52,7 +52,8 @@ class CellWatcher {
 };
 
 // Runs the cells on `threads` threads, begun in their order; a population solver's batches use threads that
-// have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins. After an
+// have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins, and one
+// that had not evaluated anything is not reported. After an
 // exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
 void run_cells(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
                const std::atomic<bool>& interrupt, CellWatcher& watcher);
