@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "solvers/cmaes.hpp"
 #include "solvers/ceres_solver.hpp"
+#include "solvers/cmaes.hpp"
+#include "solvers/coordinate_search.hpp"
+#include "solvers/genetic.hpp"
 #include "solvers/interior_point.hpp"
 #include "solvers/levenberg_marquardt.hpp"
 #include "solvers/nlopt_solvers.hpp"
+#include "solvers/particle_swarm.hpp"
 
 namespace odobench {
 
@@ -19,7 +22,10 @@ const std::vector<SolverEntry>& solver_registry() {
     rows.push_back(levenberg_marquardt_entry());
     rows.push_back(ceres_entry());
     rows.push_back(interior_point_entry());
+    rows.push_back(genetic_entry());
+    rows.push_back(particle_swarm_entry());
     rows.push_back(cmaes_entry());
+    rows.push_back(coordinate_search_entry());
     for (SolverEntry& entry : nlopt_entries()) rows.push_back(std::move(entry));
     return rows;
   }();

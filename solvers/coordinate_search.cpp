@@ -1,0 +1,58 @@
+#include "solvers/coordinate_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "solvers/greedy_scan.hpp"
+
+namespace odobench {
+
+Matrix coordinate_neighbours(const Vector& u, double step) {
+  const Eigen::Index m = u.size();
+  Matrix all(m, 2 * m);
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      const double moved = std::clamp(u[i] + sign * step, -1.0, 1.0);
+      if (moved == u[i]) continue;
+      all.col(count) = u;
+      all(i, count) = moved;
+      ++count;
+    }
+  }
+  return all.leftCols(count);
+}
+
+void CoordinateSearchOptions::bind(OptionBinder& binder) {
+  binder.number("step", step, "first step, half-widths of the box", 1e-15, 2);
+  binder.number("tolerance", tolerance, "stop when the step is below this", 1e-15, 2);
+  binder.integer("moves", moves, "limit of moves", 1);
+}
+
+void CoordinateSearchOptions::validate() const {
+  if (tolerance > step)
+    throw std::invalid_argument(
+        fmt::format("solver 'coordinate': option tolerance={} > step={}; expected tolerance <= step", tolerance, step));
+}
+
+Outcome CoordinateSearch::minimise(Run& run) const {
+  Vector u = run.start();
+  double cost = run.cost(u);
+  int moves_left = options_.moves;
+  double step = options_.step;
+  for (; step >= options_.tolerance; step *= 0.5) {
+    const ScanEnd end = greedy_scan(run, [step](const Vector& at) { return coordinate_neighbours(at, step); }, u, cost, moves_left);
+    if (end == ScanEnd::RunStopped) return {};
+    if (end == ScanEnd::MoveLimit)
+      return {Termination::IterationLimit, fmt::format("{} moves >= limit {}, step {:.2g}", options_.moves, options_.moves, step)};
+  }
+  return {Termination::Stalled, fmt::format("step {:.2g} < {:.2g}", step, options_.tolerance)};
+}
+
+SolverEntry coordinate_search_entry() {
+  return make_entry<CoordinateSearch, CoordinateSearchOptions>("coordinate", "greedy coordinate search with step halving", false);
+}
+
+}  // namespace odobench
