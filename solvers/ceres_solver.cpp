@@ -60,6 +60,7 @@ class Residuals final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    if (work_.error) return false;
     try {
       return evaluate(work_.point(parameters[0]), residuals, jacobians == nullptr ? nullptr : jacobians[0]);
     } catch (...) {  // not through Ceres' frames; the outer loop throws it on

@@ -162,6 +162,7 @@ class BoxProgram final : public Ipopt::TNLP {
   template <class F>
   double guarded(const F& f) {
     const Outside outside(lock_);
+    if (error_) return std::numeric_limits<double>::infinity();
     try {
       return f();
     } catch (...) {

@@ -42,11 +42,18 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     gradient("mma", NLOPT_LD_MMA, "method of moving asymptotes (Svanberg 2002)");
     gradient("ccsaq", NLOPT_LD_CCSAQ, "conservative convex separable quadratic approximation (Svanberg 2002)");
     simple("bobyqa", NLOPT_LN_BOBYQA, "derivative-free quadratic models in a box (Powell 2009)");
-    simple("newuoa", NLOPT_LN_NEWUOA_BOUND, "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
+    {
+      NloptAlgorithm& row = simple("newuoa", NLOPT_LN_NEWUOA_BOUND, "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
+      row.scalar_step = true;
+      row.least_xtol = 1e-8;
+    }
     simple("cobyla", NLOPT_LN_COBYLA, "derivative-free linear models (Powell 1994)");
     simple("neldermead", NLOPT_LN_NELDERMEAD, "Nelder-Mead simplex with bounds (Box 1965)");
     simple("sbplx", NLOPT_LN_SBPLX, "Nelder-Mead on subspaces (Rowan 1990)");
-    simple("praxis", NLOPT_LN_PRAXIS, "principal axes (Brent 1972), infinite cost outside the box").stochastic = true;
+    {
+      NloptAlgorithm& row = simple("praxis", NLOPT_LN_PRAXIS, "principal axes (Brent 1972), infinite cost outside the box");
+      row.stochastic = row.scalar_step = true;
+    }
     global("crs2", NLOPT_GN_CRS2_LM, "controlled random search with local mutation (Kaelo, Ali 2006)", true).population = true;
     global("isres", NLOPT_GN_ISRES, "evolution strategy (Runarsson, Yao 2005)", true).population = true;
     global("esch", NLOPT_GN_ESCH, "evolutionary algorithm (da Silva Santos 2010)", true).population = true;

@@ -68,7 +68,7 @@ class Objective {
     double cost = kInfinity;
     Vector g;
     try {
-      if (!run_.stop()) {
+      if (!error_ && !run_.stop()) {
         ++evaluations_;
         const Eigen::Map<const Vector> u(x, m);
         if (gradient != nullptr) {
@@ -218,7 +218,7 @@ Outcome judge(Run& run, const Objective& objective, const NloptOptions& options,
 }  // namespace
 
 void NloptOptions::bind(OptionBinder& binder) {
-  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box", 0, 1);
+  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box", algorithm->least_xtol, 1);
   binder.number("ftol", ftol, "stop when the cost changes by at most this times itself", 0, 1);
   binder.integer("evaluations", evaluations, "evaluation limit of its own", 1);
   if (algorithm->gradient && !algorithm->global)
@@ -235,7 +235,7 @@ void NloptOptions::bind(OptionBinder& binder) {
     std::vector<std::string> names;
     for (const NloptAlgorithm& row : local_methods()) names.push_back(row.name);
     binder.choice("local", local, "local method", std::move(names));
-    binder.number("local_xtol", local_xtol, "xtol of the local method", 0, 1);
+    binder.number("local_xtol", local_xtol, "xtol of the local method", 1e-8, 1);
   }
 }
 
@@ -297,6 +297,9 @@ std::vector<SolverEntry> nlopt_entries() {
     defaults.algorithm = &row;
     if (row.gradient && !row.global) defaults.evaluations = 10000;
     if (row.global) defaults.ftol = 0;  // one generation without progress is no reason to stop
+    if (row.local) defaults.evaluations = 20000;  // its own work grows with their square
+    if (row.least_xtol > 0) defaults.xtol = 10 * row.least_xtol;
+    if (row.scalar_step) defaults.step = 0.25;
     defaults.memory = 100;
     entries.push_back(make_entry<NloptSolver, NloptOptions>("nlopt:" + row.name, row.summary, row.stochastic, defaults));
   }
