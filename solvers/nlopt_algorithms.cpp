@@ -44,7 +44,7 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     simple("bobyqa", NLOPT_LN_BOBYQA, "derivative-free quadratic models in a box (Powell 2009)");
     {
       NloptAlgorithm& row = simple("newuoa", NLOPT_LN_NEWUOA_BOUND, "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
-      row.scalar_step = true;
+      row.scalar_step = row.not_for_one = true;
       row.least_xtol = 1e-8;
     }
     simple("cobyla", NLOPT_LN_COBYLA, "derivative-free linear models (Powell 1994)");
@@ -63,8 +63,8 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     global("direct-noscal", NLOPT_GN_DIRECT_NOSCAL, "DIRECT without NLopt's scaling", false);
     global("direct-l-noscal", NLOPT_GN_DIRECT_L_NOSCAL, "DIRECT-L without NLopt's scaling", false);
     global("direct-l-rand-noscal", NLOPT_GN_DIRECT_L_RAND_NOSCAL, "DIRECT-L-RAND without NLopt's scaling", true);
-    global("direct-orig", NLOPT_GN_ORIG_DIRECT, "DIRECT, Gablonsky's code", false);
-    global("direct-l-orig", NLOPT_GN_ORIG_DIRECT_L, "DIRECT-L, Gablonsky's code", false);
+    global("direct-orig", NLOPT_GN_ORIG_DIRECT, "DIRECT, Gablonsky's code", false).late_stop = true;
+    global("direct-l-orig", NLOPT_GN_ORIG_DIRECT_L, "DIRECT-L, Gablonsky's code", false).late_stop = true;
     for (const bool random : {false, true}) {
       NloptAlgorithm& row = global(random ? "stogo-rand" : "stogo", random ? NLOPT_GD_STOGO_RAND : NLOPT_GD_STOGO,
                                    random ? "StoGO with random starts" : "branch and bound with local searches (Madsen, Zertchaninov 1998)", random);

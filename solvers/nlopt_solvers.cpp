@@ -64,6 +64,7 @@ class Objective {
  private:
   double evaluate(unsigned n, const double* x, double* gradient) {
     const auto m = static_cast<Eigen::Index>(n);
+    ++calls_;
     if (gradient != nullptr) std::fill(gradient, gradient + n, 0.0);
     double cost = kInfinity;
     Vector g;
@@ -82,7 +83,7 @@ class Objective {
     } catch (...) {
       error_ = std::current_exception();
     }
-    if (error_ || run_.stop()) return leave();
+    if (error_ || run_.stop()) return leave(n);
     if (!std::isfinite(cost)) return worst_ + std::abs(worst_) + 1.0;
     const double value = scale_ * cost;
     worst_ = std::max(worst_, value);
@@ -97,8 +98,9 @@ class Objective {
     return value;
   }
 
-  double leave() {
-    nlopt_force_stop(handle_);
+  double leave(unsigned n) {
+    // Gablonsky's code reads an unset index when it is stopped within its first 2 n + 1 points.
+    if (!algorithm_.late_stop || calls_ > 2 * static_cast<std::int64_t>(n) + 1) nlopt_force_stop(handle_);
     if (algorithm_.statics && algorithm_.gradient) throw LeaveStogo{};
     if (algorithm_.statics) return kBelowStopValue;
     return worst_ + std::abs(worst_) + 1.0;
@@ -111,6 +113,7 @@ class Objective {
   double worst_ = 0;
   double lowest_ = kInfinity;
   int evaluations_ = 0;
+  std::int64_t calls_ = 0;  // with those after the driver's stop, which evaluate nothing
   Vector gradient_, gradient_at_;
   std::exception_ptr error_;
 };
@@ -244,6 +247,7 @@ std::string NloptSolver::why_not(const Problem& problem) const {
   const Eigen::Index free = Box(problem.parameters()).dimension();
   if (algorithm.most_parameters > 0 && free > algorithm.most_parameters)
     return fmt::format("takes at most {} free parameters, the problem has {}", algorithm.most_parameters, free);
+  if (algorithm.not_for_one && free == 1) return "needs at least two free parameters, the problem has one";
   if (algorithm.gradient && !problem.has_gradient()) return "needs a gradient, the problem has none";
   if (algorithm.local && local_method(options_.local).gradient && !problem.has_gradient())
     return fmt::format("local={} needs a gradient, the problem has none; local=bobyqa needs none", options_.local);
