@@ -26,7 +26,7 @@ check() {  # check NAME SET.JSON
   # processor's rounding. What a swarm reaches unpolished depends on the last bit; the tests look at that over seeds.
   "$bench" --quiet --data="$2" --solver=lm,ceres,ip,nlopt:slsqp,nlopt:lbfgs,nlopt:bobyqa \
     --out="$work/$1/local" --overwrite --format=csv >/dev/null
-  "$bench" --quiet --data="$2" --solver=ga,pso,cmaes --polish=lm --max-evals=20000 \
+  "$bench" --quiet --data="$2" --solver=ga,pso,cmaes --polish=lm --max-evals=5000 \
     --out="$work/$1/population" --overwrite --format=csv >/dev/null
   "$bench" check "${update[@]}" --baseline="$root/tests/golden/$1.json" "$work/$1/local" "$work/$1/population" || status=1
 }
