@@ -21,6 +21,7 @@ struct DescentSetting {
 
 struct DescentResult {
   double best = std::numeric_limits<double>::infinity();
+  Vector best_u;
   double first_median = std::numeric_limits<double>::infinity();
   std::int64_t evaluations = 0;
   std::string message;
@@ -37,7 +38,11 @@ DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOption
     const Matrix candidates = map.to_box(descent.sample(run.random()));
     run.batch_cost(candidates, costs);
     result.evaluations = run.evaluations() - before;
-    result.best = std::min(result.best, costs.minCoeff());
+    Eigen::Index first = 0;
+    if (const double low = costs.minCoeff(&first); low < result.best) {
+      result.best = low;
+      result.best_u = candidates.col(first);
+    }
     if (run.stop()) return result;
     run.iteration();
     if (g == 0) {
@@ -56,6 +61,13 @@ DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOption
   return result;
 }
 
+// Two descents that ended in the same place, judged by the costs and, coarsely because a valley may be flat, the points.
+bool same_minimum(const DescentResult& a, const DescentResult& b) {
+  if (!std::isfinite(a.best) || !std::isfinite(b.best)) return false;
+  const double scale = std::max({std::abs(a.best), std::abs(b.best), b.first_median - b.best});
+  return std::abs(a.best - b.best) <= 1e-9 * scale && (a.best_u - b.best_u).cwiseAbs().maxCoeff() <= 0.05;
+}
+
 // The sequence of descents: populations, steps and starts of the two restart strategies.
 class Restarts {
  public:
@@ -69,7 +81,8 @@ class Restarts {
     setting.start.resize(m_);
     for (double& u : setting.start) u = random.uniform(-1.0, 1.0);
     setting.sigma = options_.sigma;
-    small_ = options_.strategy == "bipop" && spent_small_ < spent_large_ && large_ > base_;
+    small_ = small_is_next();
+    ++count_;
     if (small_) {
       const double u = random.uniform();
       const double ratio = 0.5 * large_ / base_;
@@ -77,10 +90,14 @@ class Restarts {
       setting.sigma *= std::pow(10.0, -2.0 * random.uniform());
     } else {
       large_ = std::min(large_, 1 << 20) * 2;
+      ++doubled_;
       setting.population = large_;
     }
     return limited(setting);
   }
+  bool small_is_next() const { return options_.strategy == "bipop" && doubled_ > 0 && spent_small_ < spent_large_; }
+  int count() const { return count_; }
+  int large() const { return doubled_; }
   void spent(std::int64_t evaluations) { (small_ ? spent_small_ : spent_large_) += evaluations; }
 
  private:
@@ -94,6 +111,7 @@ class Restarts {
   Eigen::Index m_;
   int base_ = 0, large_ = 0;
   bool small_ = false;
+  int count_ = 0, doubled_ = 0;
   std::int64_t spent_large_ = 0, spent_small_ = 0;
 };
 
@@ -104,7 +122,7 @@ void CmaesOptions::bind(OptionBinder& binder) {
   binder.number("sigma", sigma, "first standard deviation, half-widths of the box", 1e-12, 10);
   binder.flag("active", active, "negative weights for the worse half of the samples");
   binder.choice("strategy", strategy, "how restarts choose their population", {"ipop", "bipop"});
-  binder.integer("restarts", restarts, "most restarts; ends earlier when a restart finds the same cost again", 0);
+  binder.integer("restarts", restarts, "most restarts with a doubled population; ends earlier when a restart finds the best point again", 0);
   binder.integer("generations", generations, "limit per descent, 0: 100 + 50 (parameters + 3)^2 / sqrt(population)", 0);
   binder.number("cost_tolerance", cost_tolerance, "a descent ends when recent costs differ by at most this times the cost", 0, 1);
   binder.number("step_tolerance", step_tolerance, "a descent ends when all deviations are below this times the first", 0, 1);
@@ -119,20 +137,19 @@ std::string Cmaes::why_not(const Problem&) const { return {}; }
 
 Outcome Cmaes::minimise(Run& run) const {
   Restarts restarts(options_, run.dimension());
-  double best = std::numeric_limits<double>::infinity();
-  for (int k = 0;; ++k) {
-    const DescentResult result = descend(run, k == 0 ? restarts.first(run.start()) : restarts.next(run.random()), options_);
+  DescentResult best = descend(run, restarts.first(run.start()), options_);
+  if (run.stop()) return {};
+  restarts.spent(best.evaluations);
+  if (options_.restarts == 0) return {best.converged ? Termination::Converged : Termination::IterationLimit, best.message};
+  for (;;) {
+    const DescentResult result = descend(run, restarts.next(run.random()), options_);
     if (run.stop()) return {};
     restarts.spent(result.evaluations);
-    const double scale = std::max(std::abs(result.best), result.first_median - result.best);
-    const bool again = k > 0 && std::isfinite(best) && std::abs(result.best - best) <= 1e-9 * scale;
-    best = std::min(best, result.best);
-    if (best == 0 && result.converged && run.problem().has_residuals()) return {Termination::Converged, "cost 0: an exact fit"};
-    if (again)
-      return {Termination::Converged, fmt::format("restart {} ended at the same cost within 1e-9; {}", k, result.message)};
-    if (k == options_.restarts)
-      return {result.converged ? Termination::Converged : Termination::IterationLimit,
-              k == 0 ? result.message : fmt::format("{} restarts >= limit {}; {}", k, options_.restarts, result.message)};
+    const bool again = same_minimum(best, result);
+    if (result.best < best.best) best = result;
+    if (again) return {Termination::Converged, fmt::format("restart {} ended at the best point again; {}", restarts.count(), result.message)};
+    if (restarts.large() >= options_.restarts && !restarts.small_is_next())
+      return {Termination::IterationLimit, fmt::format("{} restarts with a doubled population >= limit {}; {}", restarts.large(), options_.restarts, best.message)};
   }
 }
 

@@ -6,8 +6,8 @@
 //   ipop   with a doubled population (Auger and Hansen, CEC 2005), or
 //   bipop  by turns with a doubled one and with a small one, lambda = lambda_0 (lambda_large / (2 lambda_0))^(U^2),
 //          sigma = sigma_0 10^(-2U), U uniform, whichever regime has spent fewer evaluations (Hansen, GECCO 2009),
-// until the restarts are used up or a descent arrives at the best cost of an earlier one again: the costs agree within
-// 1e-9 of the larger of |J| and the improvement since the descent's first generation.
+// until the restarts with a doubled population are used up or a descent arrives at the best point again: the costs agree
+// within 1e-9 of the larger of |J| and the improvement since the descent's first generation, the points within 0.05.
 #pragma once
 
 #include "solvers/solver.hpp"

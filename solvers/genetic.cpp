@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "solvers/boundary_map.hpp"
+#include "solvers/genetic_thesis.hpp"
 
 namespace odobench {
 namespace {

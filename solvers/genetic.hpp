@@ -15,7 +15,7 @@
 // of their REX-star and AREX, (C) and (E) are ours. The children have the parents' covariance, whatever its shape: no
 // step depends on the coordinate frame, a rotated valley is as easy as a sphere once the population lies in it.
 //
-// variant=thesis: the program of J. Vitko's thesis (Zagreb 2024), see solvers/genetic_thesis.cpp.
+// variant=thesis: the program of J. Vitko's thesis (Zagreb 2024), see solvers/genetic_thesis.hpp.
 #pragma once
 
 #include "solvers/solver.hpp"
@@ -54,8 +54,6 @@ class Genetic final : public Solver {
   Outcome modern(Run& run) const;
   GeneticOptions options_;
 };
-
-Outcome minimise_genetic_thesis(Run& run, const GeneticOptions& options);
 
 SolverEntry genetic_entry();
 

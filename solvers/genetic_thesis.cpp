@@ -1,47 +1,12 @@
-// The genetic algorithm of J. Vitko's master's thesis (University of Zagreb, 2024), as its program runs it, on any box.
-//   start       every gene uniform in the box: nominal (0.95 + 0.1 rand) for the thesis' box of +-5 %
-//   selection   roulette: f_i = 1 - J_i / sum J, normalised; N parents, drawn with replacement
-//   couples     (1,2), (3,4), ...; each crosses with probability pc, otherwise the two pass unchanged
-//   mutation    each gene with probability pm times a factor uniform in [factor_low, factor_high], clipped to the box
-//   elitism     a random member of the new generation gives way to the best of the old one if that is better
-// Crossovers of parents p, q (c is uniform in [0, 1), one per couple; the sums are s = c p + (1-c) q, t = (1-c) p + c q):
-//   0 one point, cut in 1..m-1          1 sums, then one point between them        2 sums only
-//   3 each gene from a random parent, the other one's for the second child         4 sums, then 3 between them
-//   5 blend: b = (2u)^(1/(eta+1)), u <= 1/2, else (1/(2(1-u)))^(1/(eta+1)), one b for all genes;
-//     children ((1+b) p + (1-b) q) / 2 and ((1-b) p + (1+b) q) / 2: Deb's simulated binary crossover; the program
-//     calls it BLX                      6 sums, then 5 between them
-// The program evaluates the offspring and then the whole new generation once more; here a value that is known is not
-// computed again, so that a generation costs N evaluations instead of 2 N and 600 generations N (600 + 1).
+#include "solvers/genetic_thesis.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/genetic.hpp"
-
 namespace odobench {
 namespace {
-
-// N draws with replacement, with probabilities f_i = 1 - J_i / sum J, normalised.
-std::vector<Eigen::Index> roulette(Random& random, const Vector& costs) {
-  const Eigen::Index n = costs.size();
-  Vector fitness = Vector::Zero(n);
-  double sum = 0;
-  for (double cost : costs)
-    if (std::isfinite(cost)) sum += cost;
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (std::isfinite(costs[i])) fitness[i] = sum != 0 ? 1.0 - costs[i] / sum : 1.0;
-  // Costs of mixed sign can leave no valid wheel (the thesis' costs are sums of squares): every member is equal then.
-  if (!(fitness.minCoeff() >= 0 && fitness.sum() > 0)) fitness = Vector::Ones(n);
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double spin = random.uniform() * fitness.sum();
-    Eigen::Index i = 0;
-    for (double passed = fitness[0]; i + 1 < n && spin >= passed; passed += fitness[i]) ++i;
-    chosen.push_back(i);
-  }
-  return chosen;
-}
 
 void weighted_sums(Random& random, Vector& p, Vector& q) {
   const double c = random.uniform();
@@ -69,14 +34,6 @@ void blend(Random& random, double eta, Vector& p, Vector& q) {
   p = s;
 }
 
-void cross(Random& random, const GeneticOptions& options, Vector& p, Vector& q) {
-  const int kind = options.crossover;
-  if (kind == 1 || kind == 2 || kind == 4 || kind == 6) weighted_sums(random, p, q);
-  if (kind == 0 || kind == 1) one_point(random, p, q);
-  if (kind == 3 || kind == 4) uniform_exchange(random, p, q);
-  if (kind == 5 || kind == 6) blend(random, options.eta, p, q);
-}
-
 // In parameter units: the factor acts on the value itself, not on its place in the box.
 void mutate(Run& run, const GeneticOptions& options, Vector& u) {
   Vector x = run.box().to_parameters(u);
@@ -96,7 +53,7 @@ Matrix offspring(Run& run, const GeneticOptions& options, const Matrix& members,
     if (run.random().uniform() >= options.pc) continue;
     Vector p = next.col(i);
     Vector q = next.col(i + 1);
-    cross(run.random(), options, p, q);
+    thesis_crossover(run.random(), options.crossover, options.eta, p, q);
     next.col(i) = p;
     next.col(i + 1) = q;
   }
@@ -109,6 +66,33 @@ Matrix offspring(Run& run, const GeneticOptions& options, const Matrix& members,
 }
 
 }  // namespace
+
+std::vector<Eigen::Index> roulette(Random& random, const Vector& costs) {
+  const Eigen::Index n = costs.size();
+  Vector fitness = Vector::Zero(n);
+  double sum = 0;
+  for (double cost : costs)
+    if (std::isfinite(cost)) sum += cost;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (std::isfinite(costs[i])) fitness[i] = sum != 0 ? 1.0 - costs[i] / sum : 1.0;
+  // Costs of mixed sign can leave no valid wheel (the thesis' costs are sums of squares): every member is equal then.
+  if (!(fitness.minCoeff() >= 0 && fitness.sum() > 0)) fitness = Vector::Ones(n);
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double spin = random.uniform() * fitness.sum();
+    Eigen::Index i = 0;
+    for (double passed = fitness[0]; i + 1 < n && spin >= passed; passed += fitness[i]) ++i;
+    chosen.push_back(i);
+  }
+  return chosen;
+}
+
+void thesis_crossover(Random& random, int kind, double eta, Vector& p, Vector& q) {
+  if (kind == 1 || kind == 2 || kind == 4 || kind == 6) weighted_sums(random, p, q);
+  if (kind == 0 || kind == 1) one_point(random, p, q);
+  if (kind == 3 || kind == 4) uniform_exchange(random, p, q);
+  if (kind == 5 || kind == 6) blend(random, eta, p, q);
+}
 
 Outcome minimise_genetic_thesis(Run& run, const GeneticOptions& options) {
   const Eigen::Index m = run.dimension();
