@@ -318,6 +318,16 @@ TEST(Repeats, OneRunOrManyEvaluationsAreNoRepeats) {
   EXPECT_THAT(ids(comparison_tables(records)), Not(Contains("repeats")));
 }
 
+TEST(Repeats, SkippedRecordsDoNotCountAsRuns) {
+  RunRecord no = skipped("pso");
+  no.problem = "sphere";
+  no.dataset = "";
+  const auto tables = comparison_tables({no, run_record("pso", 3, 1), no, run_record("pso", 2, 2)});
+  EXPECT_EQ(cell(table(tables, "repeats"), "pso", "runs").value, 2);
+  EXPECT_EQ(cell(table(tables, "solvers"), "pso", "cost").value, 2);
+  EXPECT_THAT(ids(comparison_tables({no, no})), ElementsAre("solvers"));
+}
+
 TEST(Repeats, AllFailedIsShown) {
   RunRecord r = run_record("pso", 0);
   r.cost.reset();
