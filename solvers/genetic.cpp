@@ -105,7 +105,7 @@ void GeneticOptions::bind(OptionBinder& binder) {
   binder.choice("variant", variant, "modern: multi-parent, frame-independent; thesis: the Zagreb program", {"modern", "thesis"});
   binder.integer("population", population, "members, 0: modern 5 per parameter (at least 20), thesis 12", 0, 1 << 20);
   binder.integer("generations", generations, "limit, 0: modern 20000, thesis 600", 0);
-  binder.integer("parents", parents, "modern: parents of one generation, 0: 2 per parameter + 6", 0, 1 << 20);
+  binder.integer("parents", parents, "modern: parents of one generation, 0: 2 per parameter (at least 8)", 0, 1 << 20);
   binder.integer("children", children, "modern: children of one generation, 0: 6 per parameter (at least 12)", 0, 1 << 20);
   binder.number("expansion", expansion, "modern: spread of the first children relative to their parents'", 0.1, 10);
   binder.flag("adapt", adapt, "modern: the expansion follows the success of the children (E)");
@@ -140,7 +140,7 @@ Outcome Genetic::minimise(Run& run) const {
 Outcome Genetic::modern(Run& run) const {
   const Eigen::Index m = run.dimension();
   const int size = options_.population > 0 ? options_.population : std::max(20, static_cast<int>(5 * m));
-  const int parents = std::min(size, options_.parents > 0 ? options_.parents : static_cast<int>(2 * m + 6));
+  const int parents = std::min(size, options_.parents > 0 ? options_.parents : std::max(8, static_cast<int>(2 * m)));
   const int children = options_.children > 0 ? options_.children : std::max(12, static_cast<int>(6 * m));
   const int generations = options_.generations > 0 ? options_.generations : 20000;
   const BoundaryMap map(options_.boundary);

@@ -27,7 +27,7 @@ struct GeneticOptions {
   int population = 0;    // 0: modern 5 m, at least 20, thesis 12
   int generations = 0;   // 0: modern 20000, thesis 600
   // modern
-  int parents = 0;       // 0: 2 m + 6
+  int parents = 0;       // 0: 2 m, at least 8
   int children = 0;      // 0: 6 m, at least 12
   double expansion = 1.0;
   bool adapt = true;
