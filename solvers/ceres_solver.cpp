@@ -34,7 +34,8 @@ constexpr double kExactFit = 1e-20;
 struct Workspace {
   Run& run;
   bool full = false;
-  double scale = 1;  // residuals are multiplied with it, so that Ceres' absolute thresholds see a cost of about 1
+  double scale =
+      1;  // residuals are multiplied with it, so that Ceres' absolute thresholds see a cost of about 1
   Vector u;
   std::vector<Eigen::Index> free;
   NormalEquations e;
@@ -46,7 +47,9 @@ struct Workspace {
     for (std::size_t k = 0; k < free.size(); ++k) p[free[k]] = x[k];
     return p;
   }
-  bool has_derivatives_at(const Vector& p) const { return e_at.size() == p.size() && (e_at.array() == p.array()).all(); }
+  bool has_derivatives_at(const Vector& p) const {
+    return e_at.size() == p.size() && (e_at.array() == p.array()).all();
+  }
 };
 
 // Sum of squares for Ceres on the free coordinates. Where only the cost is asked for, one residual carries it all:
@@ -117,7 +120,8 @@ class RoundControl final : public ceres::IterationCallback {
     }
     const Vector u = work_.point(x_.data());
     if (!summary.step_is_successful || !work_.has_derivatives_at(u)) return ceres::SOLVER_CONTINUE;
-    if (projected_cosine(u, work_.e) <= options_.gradient_tolerance) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (projected_cosine(u, work_.e) <= options_.gradient_tolerance)
+      return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (!options_.active_set) return ceres::SOLVER_CONTINUE;
     for (Eigen::Index i : work_.free) arrived_ = arrived_ || held_by_bound(u[i], work_.e.jtr[i]);
     return arrived_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
@@ -194,18 +198,20 @@ bool refresh(Workspace& work) {
 }
 
 Outcome converged(double cosine, const CeresOptions& options, int round) {
-  return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative) in round {}", cosine,
-                                              options.gradient_tolerance, round)};
+  return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative) in round {}",
+                                              cosine, options.gradient_tolerance, round)};
 }
 
 // A round ended without meeting the gradient tolerance: is there anything left to gain?
 Outcome no_progress(const Workspace& work, const std::string& how, double cosine) {
   const double relative = work.e.cost * work.scale * work.scale;
   if (relative <= kExactFit)
-    return {Termination::Converged, fmt::format("cost {:.2g} <= {:.2g} times its start: an exact fit", work.e.cost, kExactFit)};
+    return {Termination::Converged,
+            fmt::format("cost {:.2g} <= {:.2g} times its start: an exact fit", work.e.cost, kExactFit)};
   const double gain = predicted_gain(work.u, work.e);
   return {gain <= kNoGain ? Termination::Converged : Termination::Stalled,
-          fmt::format("{}; a bounded step would gain {:.2g} of the cost, projected gradient {:.2g}", how, gain, cosine)};
+          fmt::format("{}; a bounded step would gain {:.2g} of the cost, projected gradient {:.2g}", how,
+                      gain, cosine)};
 }
 
 // Ceres as it comes.
@@ -216,7 +222,8 @@ Outcome single_round(Workspace& work, const CeresOptions& options) {
   const double cosine = projected_cosine(work.u, work.e);
   if (cosine <= options.gradient_tolerance) return converged(cosine, options, 1);
   if (result.iterations >= options.iterations)
-    return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", result.iterations, options.iterations)};
+    return {Termination::IterationLimit,
+            fmt::format("{} iterations >= limit {}", result.iterations, options.iterations)};
   return no_progress(work, "Ceres says: " + result.message, cosine);
 }
 
@@ -233,7 +240,8 @@ Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
     if (release && previous == work.free && !(last_cost - work.e.cost > options.cost_tolerance * work.e.cost))
       return no_progress(work, fmt::format("round {} gained nothing", round - 1), cosine);
     if (left <= 0)
-      return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", options.iterations, options.iterations)};
+      return {Termination::IterationLimit,
+              fmt::format("{} iterations >= limit {}", options.iterations, options.iterations)};
     last_cost = work.e.cost;
     if (work.free.empty()) {  // everything is held, but not every multiplier has its sign
       release = true;
@@ -268,17 +276,24 @@ void compress_residuals(const NormalEquations& e, Matrix& jacobian, Vector& resi
 
 void CeresOptions::bind(OptionBinder& binder) {
   binder.choice("strategy", strategy, "trust-region strategy", {"lm", "dogleg"});
-  binder.flag("active_set", active_set, "hold parameters at their bounds by the sign of their multiplier (false: Ceres alone, which stalls)");
-  binder.choice("residuals", residuals, "rows given to Ceres: the square root of the normal equations, or all", {"compressed", "full"});
+  binder.flag(
+      "active_set", active_set,
+      "hold parameters at their bounds by the sign of their multiplier (false: Ceres alone, which stalls)");
+  binder.choice("residuals", residuals,
+                "rows given to Ceres: the square root of the normal equations, or all",
+                {"compressed", "full"});
   binder.number("radius", radius, "initial trust-region radius", 1e-12, 1e16);
-  binder.number("gradient_tolerance", gradient_tolerance, "stop when every free |J'r|_i / (|J_i| |r|) is at most this", 0, 1);
-  binder.number("cost_tolerance", cost_tolerance, "a round ends when the cost decreases by at most this times itself", 0, 1);
+  binder.number("gradient_tolerance", gradient_tolerance,
+                "stop when every free |J'r|_i / (|J_i| |r|) is at most this", 0, 1);
+  binder.number("cost_tolerance", cost_tolerance,
+                "a round ends when the cost decreases by at most this times itself", 0, 1);
   binder.integer("iterations", iterations, "iteration limit over all rounds", 1);
 }
 
 std::string CeresSolver::why_not(const Problem& problem) const {
   if (options_.residuals == "full")
-    return problem.has_residuals() ? "" : "residuals=full needs residuals with a Jacobian, the problem has none";
+    return problem.has_residuals() ? ""
+                                   : "residuals=full needs residuals with a Jacobian, the problem has none";
   return problem.has_normal_equations() ? "" : "needs residuals with a Jacobian, the problem has none";
 }
 
@@ -287,7 +302,8 @@ Outcome CeresSolver::minimise(Run& run) const {
   Workspace work{run, options_.residuals == "full", 1.0, run.start(), {}, {}, {}, {}};
   run.normal_equations(work.u, work.e);
   if (run.stop()) return {};
-  if (!std::isfinite(work.e.cost)) return {Termination::Failed, "the cost or its derivatives at the start are not finite"};
+  if (!std::isfinite(work.e.cost))
+    return {Termination::Failed, "the cost or its derivatives at the start are not finite"};
   if (work.e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
   work.e_at = work.u;
   work.scale = 1.0 / std::sqrt(work.e.cost);

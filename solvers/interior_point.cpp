@@ -1,8 +1,8 @@
 #include "solvers/interior_point.hpp"
 
+#include <fmt/format.h>
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
-#include <fmt/format.h>
 
 #include <cmath>
 #include <exception>
@@ -77,8 +77,8 @@ class BoxProgram final : public Ipopt::TNLP {
   }
   bool eval_g(Index, const Number*, bool, Index, Number*) override { return true; }
   bool eval_jac_g(Index, const Number*, bool, Index, Index, Index*, Index*, Number*) override { return true; }
-  bool eval_h(Index n, const Number* x, bool, Number factor, Index, const Number*, bool, Index, Index* rows, Index* columns,
-              Number* values) override {
+  bool eval_h(Index n, const Number* x, bool, Number factor, Index, const Number*, bool, Index, Index* rows,
+              Index* columns, Number* values) override {
     if (values != nullptr && !derivatives(Eigen::Map<const Vector>(x, n))) return false;
     if (values != nullptr && corrected_) correct();
     Index k = 0;
@@ -93,12 +93,13 @@ class BoxProgram final : public Ipopt::TNLP {
       }
     return true;
   }
-  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index, const Number*,
-                         const Number*, Number, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number*, const Number*, Index,
+                         const Number*, const Number*, Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {
     last_ = Eigen::Map<const Vector>(x, n);
   }
-  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number dual_infeasibility, Number mu,
-                             Number, Number, Number, Number, Index, const Ipopt::IpoptData*,
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number dual_infeasibility,
+                             Number mu, Number, Number, Number, Number, Index, const Ipopt::IpoptData*,
                              Ipopt::IpoptCalculatedQuantities*) override {
     iterations_ = iteration;
     dual_infeasibility_ = dual_infeasibility;
@@ -150,13 +151,16 @@ class BoxProgram final : public Ipopt::TNLP {
       if (now != 0) correction_ *= std::min(1.0, std::abs(s.dot(y) / now));
       const Vector miss = y - correction_ * s;
       const double denominator = miss.dot(s);
-      if (std::abs(denominator) > 1e-8 * miss.norm() * s.norm()) correction_ += miss * miss.transpose() / denominator;
+      if (std::abs(denominator) > 1e-8 * miss.norm() * s.norm())
+        correction_ += miss * miss.transpose() / denominator;
     }
     corrected_at_ = derivatives_at_;
     corrected_jtr_ = e_.jtr;
   }
 
-  static bool same(const Vector& a, const Vector& b) { return a.size() == b.size() && (a.array() == b.array()).all(); }
+  static bool same(const Vector& a, const Vector& b) {
+    return a.size() == b.size() && (a.array() == b.array()).all();
+  }
 
   // Runs f outside the mutex; an exception is kept for rethrow(), since it must not pass through Ipopt.
   template <class F>
@@ -201,38 +205,54 @@ void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options) 
   list.SetStringValue("linear_solver", "mumps");
 }
 
-Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& program, const InteriorPointOptions& options) {
-  const std::string numbers = fmt::format("dual infeasibility {:.2g}, barrier parameter {:.2g}, {} iterations",
-                                          program.dual_infeasibility(), program.mu(), program.iterations());
+Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& program,
+                   const InteriorPointOptions& options) {
+  const std::string numbers =
+      fmt::format("dual infeasibility {:.2g}, barrier parameter {:.2g}, {} iterations",
+                  program.dual_infeasibility(), program.mu(), program.iterations());
   switch (status) {
     case Ipopt::Solve_Succeeded:
-      return {Termination::Converged, fmt::format("Ipopt: KKT error <= {:.2g}; {}", options.tolerance, numbers)};
+      return {Termination::Converged,
+              fmt::format("Ipopt: KKT error <= {:.2g}; {}", options.tolerance, numbers)};
     case Ipopt::Solved_To_Acceptable_Level:
-    case Ipopt::Search_Direction_Becomes_Too_Small: return {Termination::Stalled, "Ipopt: the step is too small; " + numbers};
-    case Ipopt::Restoration_Failed: return {Termination::Stalled, "Ipopt: no step lowers the cost; " + numbers};
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return {Termination::Stalled, "Ipopt: the step is too small; " + numbers};
+    case Ipopt::Restoration_Failed:
+      return {Termination::Stalled, "Ipopt: no step lowers the cost; " + numbers};
     case Ipopt::Maximum_Iterations_Exceeded:
-      return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", program.iterations(), options.iterations)};
+      return {Termination::IterationLimit,
+              fmt::format("{} iterations >= limit {}", program.iterations(), options.iterations)};
     case Ipopt::Invalid_Number_Detected:
       return {Termination::Failed, "Ipopt: the cost or its derivatives are not finite; " + numbers};
-    default: return {Termination::Failed, fmt::format("Ipopt: return status {}; {}", static_cast<int>(status), numbers)};
+    default:
+      return {Termination::Failed,
+              fmt::format("Ipopt: return status {}; {}", static_cast<int>(status), numbers)};
   }
 }
 
 }  // namespace
 
 void InteriorPointOptions::bind(OptionBinder& binder) {
-  binder.choice("hessian", hessian, "second derivatives: 2 (J'J + secant correction), 2 J'J, or limited-memory BFGS (needs only a gradient)", {"corrected", "gauss-newton", "lbfgs"});
+  binder.choice("hessian", hessian,
+                "second derivatives: 2 (J'J + secant correction), 2 J'J, or limited-memory BFGS (needs only "
+                "a gradient)",
+                {"corrected", "gauss-newton", "lbfgs"});
   binder.integer("memory", memory, "pairs kept by hessian=lbfgs", 1, 1000);
   binder.choice("mu_strategy", mu_strategy, "update of the barrier parameter", {"adaptive", "monotone"});
   binder.choice("nlp_scaling", nlp_scaling, "Ipopt's own scaling of the cost", {"none", "gradient-based"});
-  binder.number("tolerance", tolerance, "KKT error of the cost relative to its start at which to stop", 1e-16, 1);
+  binder.number("tolerance", tolerance, "KKT error of the cost relative to its start at which to stop", 1e-16,
+                1);
   binder.integer("iterations", iterations, "iteration limit", 1);
 }
 
 std::string InteriorPoint::why_not(const Problem& problem) const {
-  if (options_.hessian == "lbfgs") return problem.has_gradient() ? "" : "needs a gradient, the problem has none";
+  if (options_.hessian == "lbfgs")
+    return problem.has_gradient() ? "" : "needs a gradient, the problem has none";
   if (problem.has_normal_equations()) return "";
-  return problem.has_gradient() ? fmt::format("hessian={} needs residuals with a Jacobian, the problem has only a gradient: use hessian=lbfgs", options_.hessian)
+  return problem.has_gradient() ? fmt::format(
+                                      "hessian={} needs residuals with a Jacobian, the problem has only a "
+                                      "gradient: use hessian=lbfgs",
+                                      options_.hessian)
                                 : "needs residuals with a Jacobian, the problem has none";
 }
 
@@ -249,7 +269,8 @@ Outcome InteriorPoint::minimise(Run& run) const {
     const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
     set_options(*application->Options(), options_);
     status = application->Initialize("");  // no file name: no ipopt.opt is read
-    if (status == Ipopt::Solve_Succeeded) status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(program)));
+    if (status == Ipopt::Solve_Succeeded)
+      status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(program)));
   }
   program->rethrow();
   if (run.stop()) return {};

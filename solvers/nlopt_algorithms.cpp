@@ -15,7 +15,8 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
       rows.back().summary = summary;
       return rows.back();
     };
-    const auto gradient = [&add](const char* name, nlopt_algorithm id, const char* summary) -> NloptAlgorithm& {
+    const auto gradient = [&add](const char* name, nlopt_algorithm id,
+                                 const char* summary) -> NloptAlgorithm& {
       NloptAlgorithm& row = add(name, id, summary);
       row.gradient = true;
       return row;
@@ -25,7 +26,8 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
       row.step = true;
       return row;
     };
-    const auto global = [&add](const char* name, nlopt_algorithm id, const char* summary, bool stochastic) -> NloptAlgorithm& {
+    const auto global = [&add](const char* name, nlopt_algorithm id, const char* summary,
+                               bool stochastic) -> NloptAlgorithm& {
       NloptAlgorithm& row = add(name, id, summary);
       row.global = true;
       row.stochastic = stochastic;
@@ -34,16 +36,23 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     gradient("slsqp", NLOPT_LD_SLSQP, "sequential quadratic programming (Kraft 1994)");
     gradient("lbfgs", NLOPT_LD_LBFGS, "limited-memory BFGS (Nocedal 1980, Luksan)").memory = true;
     gradient("tnewton", NLOPT_LD_TNEWTON, "truncated Newton (Dembo, Steihaug 1983)").memory = true;
-    gradient("tnewton-restart", NLOPT_LD_TNEWTON_RESTART, "truncated Newton, steepest-descent restarts").memory = true;
-    gradient("tnewton-precond", NLOPT_LD_TNEWTON_PRECOND, "truncated Newton, BFGS preconditioner").memory = true;
-    gradient("tnewton-precond-restart", NLOPT_LD_TNEWTON_PRECOND_RESTART, "truncated Newton, BFGS preconditioner, restarts").memory = true;
-    gradient("var1", NLOPT_LD_VAR1, "shifted limited-memory variable metric, rank 1 (Vlcek, Luksan 2006)").memory = true;
+    gradient("tnewton-restart", NLOPT_LD_TNEWTON_RESTART, "truncated Newton, steepest-descent restarts")
+        .memory = true;
+    gradient("tnewton-precond", NLOPT_LD_TNEWTON_PRECOND, "truncated Newton, BFGS preconditioner").memory =
+        true;
+    gradient("tnewton-precond-restart", NLOPT_LD_TNEWTON_PRECOND_RESTART,
+             "truncated Newton, BFGS preconditioner, restarts")
+        .memory = true;
+    gradient("var1", NLOPT_LD_VAR1, "shifted limited-memory variable metric, rank 1 (Vlcek, Luksan 2006)")
+        .memory = true;
     gradient("var2", NLOPT_LD_VAR2, "shifted limited-memory variable metric, rank 2").memory = true;
     gradient("mma", NLOPT_LD_MMA, "method of moving asymptotes (Svanberg 2002)");
-    gradient("ccsaq", NLOPT_LD_CCSAQ, "conservative convex separable quadratic approximation (Svanberg 2002)");
+    gradient("ccsaq", NLOPT_LD_CCSAQ,
+             "conservative convex separable quadratic approximation (Svanberg 2002)");
     simple("bobyqa", NLOPT_LN_BOBYQA, "derivative-free quadratic models in a box (Powell 2009)");
     {
-      NloptAlgorithm& row = simple("newuoa", NLOPT_LN_NEWUOA_BOUND, "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
+      NloptAlgorithm& row = simple("newuoa", NLOPT_LN_NEWUOA_BOUND,
+                                   "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
       row.scalar_step = row.not_for_one = true;
       row.least_xtol = 1e-8;
     }
@@ -51,10 +60,12 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     simple("neldermead", NLOPT_LN_NELDERMEAD, "Nelder-Mead simplex with bounds (Box 1965)");
     simple("sbplx", NLOPT_LN_SBPLX, "Nelder-Mead on subspaces (Rowan 1990)");
     {
-      NloptAlgorithm& row = simple("praxis", NLOPT_LN_PRAXIS, "principal axes (Brent 1972), infinite cost outside the box");
+      NloptAlgorithm& row =
+          simple("praxis", NLOPT_LN_PRAXIS, "principal axes (Brent 1972), infinite cost outside the box");
       row.stochastic = row.scalar_step = true;
     }
-    global("crs2", NLOPT_GN_CRS2_LM, "controlled random search with local mutation (Kaelo, Ali 2006)", true).population = true;
+    global("crs2", NLOPT_GN_CRS2_LM, "controlled random search with local mutation (Kaelo, Ali 2006)", true)
+        .population = true;
     global("isres", NLOPT_GN_ISRES, "evolution strategy (Runarsson, Yao 2005)", true).population = true;
     global("esch", NLOPT_GN_ESCH, "evolutionary algorithm (da Silva Santos 2010)", true).population = true;
     global("direct", NLOPT_GN_DIRECT, "dividing rectangles (Jones 1993)", false);
@@ -62,23 +73,29 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
     global("direct-l-rand", NLOPT_GN_DIRECT_L_RAND, "locally biased DIRECT with random sides", true);
     global("direct-noscal", NLOPT_GN_DIRECT_NOSCAL, "DIRECT without NLopt's scaling", false);
     global("direct-l-noscal", NLOPT_GN_DIRECT_L_NOSCAL, "DIRECT-L without NLopt's scaling", false);
-    global("direct-l-rand-noscal", NLOPT_GN_DIRECT_L_RAND_NOSCAL, "DIRECT-L-RAND without NLopt's scaling", true);
+    global("direct-l-rand-noscal", NLOPT_GN_DIRECT_L_RAND_NOSCAL, "DIRECT-L-RAND without NLopt's scaling",
+           true);
     global("direct-orig", NLOPT_GN_ORIG_DIRECT, "DIRECT, Gablonsky's code", false).late_stop = true;
     global("direct-l-orig", NLOPT_GN_ORIG_DIRECT_L, "DIRECT-L, Gablonsky's code", false).late_stop = true;
     for (const bool random : {false, true}) {
-      NloptAlgorithm& row = global(random ? "stogo-rand" : "stogo", random ? NLOPT_GD_STOGO_RAND : NLOPT_GD_STOGO,
-                                   random ? "StoGO with random starts" : "branch and bound with local searches (Madsen, Zertchaninov 1998)", random);
+      NloptAlgorithm& row =
+          global(random ? "stogo-rand" : "stogo", random ? NLOPT_GD_STOGO_RAND : NLOPT_GD_STOGO,
+                 random ? "StoGO with random starts"
+                        : "branch and bound with local searches (Madsen, Zertchaninov 1998)",
+                 random);
       row.gradient = row.statics = true;
       row.population = random;
     }
     {
-      NloptAlgorithm& row = global("ags", NLOPT_GN_AGS, "index algorithm on a space-filling curve (Strongin, Sergeyev)", false);
+      NloptAlgorithm& row =
+          global("ags", NLOPT_GN_AGS, "index algorithm on a space-filling curve (Strongin, Sergeyev)", false);
       row.statics = true;
       row.most_parameters = 10;
     }
     for (const bool sobol : {false, true}) {
-      NloptAlgorithm& row = global(sobol ? "mlsl-lds" : "mlsl", sobol ? NLOPT_G_MLSL_LDS : NLOPT_G_MLSL,
-                                   sobol ? "MLSL with Sobol points" : "multi-level single linkage (Rinnooy Kan, Timmer 1987)", !sobol);
+      NloptAlgorithm& row = global(
+          sobol ? "mlsl-lds" : "mlsl", sobol ? NLOPT_G_MLSL_LDS : NLOPT_G_MLSL,
+          sobol ? "MLSL with Sobol points" : "multi-level single linkage (Rinnooy Kan, Timmer 1987)", !sobol);
       row.local = row.population = row.step = true;
     }
     return rows;

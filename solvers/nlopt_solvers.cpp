@@ -165,12 +165,18 @@ Handle make_handle(const NloptOptions& options, Objective& objective, Eigen::Ind
 
 std::string in_words(nlopt_result code, const NloptOptions& options) {
   switch (code) {
-    case NLOPT_FTOL_REACHED: return fmt::format("relative change of the cost <= {:g}", options.ftol);
-    case NLOPT_XTOL_REACHED: return fmt::format("change of the parameters <= {:g} of the box", options.xtol);
-    case NLOPT_ROUNDOFF_LIMITED: return "progress is limited by rounding";
-    case NLOPT_SUCCESS: return "the method says success";
-    case NLOPT_FAILURE: return "the method found no further step";
-    default: return nlopt_result_to_string(code);
+    case NLOPT_FTOL_REACHED:
+      return fmt::format("relative change of the cost <= {:g}", options.ftol);
+    case NLOPT_XTOL_REACHED:
+      return fmt::format("change of the parameters <= {:g} of the box", options.xtol);
+    case NLOPT_ROUNDOFF_LIMITED:
+      return "progress is limited by rounding";
+    case NLOPT_SUCCESS:
+      return "the method says success";
+    case NLOPT_FAILURE:
+      return "the method found no further step";
+    default:
+      return nlopt_result_to_string(code);
   }
 }
 
@@ -203,10 +209,12 @@ Outcome judge(Run& run, const Objective& objective, const NloptOptions& options,
     const double size = projected_gradient(u, objective.gradient());
     if (u != objective.gradient_at()) run.cost(u);
     if (size <= options.gradient_tolerance)
-      return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} of the cost at the start ({})", size,
-                                                  options.gradient_tolerance, how)};
+      return {Termination::Converged,
+              fmt::format("projected gradient {:.2g} <= {:.2g} of the cost at the start ({})", size,
+                          options.gradient_tolerance, how)};
   }
-  if (!run.problem().has_normal_equations() || !run.has_best()) return {Termination::Stalled, how + "; optimality is not known"};
+  if (!run.problem().has_normal_equations() || !run.has_best())
+    return {Termination::Stalled, how + "; optimality is not known"};
   const Vector u = run.best();
   NormalEquations e;
   run.normal_equations(u, e);
@@ -214,25 +222,34 @@ Outcome judge(Run& run, const Objective& objective, const NloptOptions& options,
   if (e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
   const double gain = predicted_gain(u, e);
   if (gain <= options.gain_tolerance)
-    return {Termination::Converged, fmt::format("a bounded step would gain {:.2g} <= {:.2g} of the cost ({})", gain, options.gain_tolerance, how)};
-  return {Termination::Stalled, fmt::format("{}; a bounded step would gain {:.2g} > {:.2g} of the cost", how, gain, options.gain_tolerance)};
+    return {Termination::Converged, fmt::format("a bounded step would gain {:.2g} <= {:.2g} of the cost ({})",
+                                                gain, options.gain_tolerance, how)};
+  return {Termination::Stalled, fmt::format("{}; a bounded step would gain {:.2g} > {:.2g} of the cost", how,
+                                            gain, options.gain_tolerance)};
 }
 
 }  // namespace
 
 void NloptOptions::bind(OptionBinder& binder) {
-  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box", algorithm->least_xtol, 1);
+  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box",
+                algorithm->least_xtol, 1);
   binder.number("ftol", ftol, "stop when the cost changes by at most this times itself", 0, 1);
   binder.integer("evaluations", evaluations, "evaluation limit of its own", 1);
   if (algorithm->gradient && !algorithm->global)
-    binder.number("gradient_tolerance", gradient_tolerance, "largest projected gradient, relative to the cost at the start, that counts as converged", 0, 1);
+    binder.number("gradient_tolerance", gradient_tolerance,
+                  "largest projected gradient, relative to the cost at the start, that counts as converged",
+                  0, 1);
   if (!algorithm->global) {
     binder.integer("restarts", restarts, "further starts from the best point while they gain", 0, 1000);
-    binder.number("gain_tolerance", gain_tolerance, "predicted relative gain of a bounded step that counts as converged", 0, 1);
-    binder.number("restart_gain", restart_gain, "relative gain of a start below which there is no further one", 0, 1);
+    binder.number("gain_tolerance", gain_tolerance,
+                  "predicted relative gain of a bounded step that counts as converged", 0, 1);
+    binder.number("restart_gain", restart_gain,
+                  "relative gain of a start below which there is no further one", 0, 1);
   }
-  if (algorithm->step) binder.number("step", step, "initial step in units of half the box (0: NLopt's choice)", 0, 2);
-  if (algorithm->population) binder.integer("population", population, "population size (0: NLopt's choice)", 0, 1000000);
+  if (algorithm->step)
+    binder.number("step", step, "initial step in units of half the box (0: NLopt's choice)", 0, 2);
+  if (algorithm->population)
+    binder.integer("population", population, "population size (0: NLopt's choice)", 0, 1000000);
   if (algorithm->memory) binder.integer("memory", memory, "gradient pairs kept", 1, 10000);
   if (algorithm->local) {
     std::vector<std::string> names;
@@ -246,11 +263,13 @@ std::string NloptSolver::why_not(const Problem& problem) const {
   const NloptAlgorithm& algorithm = *options_.algorithm;
   const Eigen::Index free = Box(problem.parameters()).dimension();
   if (algorithm.most_parameters > 0 && free > algorithm.most_parameters)
-    return fmt::format("takes at most {} free parameters, the problem has {}", algorithm.most_parameters, free);
+    return fmt::format("takes at most {} free parameters, the problem has {}", algorithm.most_parameters,
+                       free);
   if (algorithm.not_for_one && free == 1) return "needs at least two free parameters, the problem has one";
   if (algorithm.gradient && !problem.has_gradient()) return "needs a gradient, the problem has none";
   if (algorithm.local && local_method(options_.local).gradient && !problem.has_gradient())
-    return fmt::format("local={} needs a gradient, the problem has none; local=bobyqa needs none", options_.local);
+    return fmt::format("local={} needs a gradient, the problem has none; local=bobyqa needs none",
+                       options_.local);
   return "";
 }
 
@@ -261,7 +280,8 @@ Outcome NloptSolver::minimise(Run& run) const {
   nlopt_srand(static_cast<unsigned long>(run.random().engine()() & 0xffffffffu));
   const double start_cost = run.cost(run.start());
   if (run.stop()) return {};
-  if (algorithm.gradient && !std::isfinite(start_cost)) return {Termination::Failed, "the cost at the start is not finite"};
+  if (algorithm.gradient && !std::isfinite(start_cost))
+    return {Termination::Failed, "the cost at the start is not finite"};
 
   Objective objective(run, algorithm);
   objective.set_scale(start_cost);
@@ -270,27 +290,32 @@ Outcome NloptSolver::minimise(Run& run) const {
   for (int round = 0;; ++round) {
     const int left = options_.evaluations - objective.evaluations();
     if (left <= 0)
-      return {Termination::IterationLimit, fmt::format("{} evaluations >= limit {} of the method", objective.evaluations(), options_.evaluations)};
+      return {Termination::IterationLimit, fmt::format("{} evaluations >= limit {} of the method",
+                                                       objective.evaluations(), options_.evaluations)};
     const nlopt_result code = start_once(run, handle.get(), objective, left);
     if (run.stop()) return {};
     if (code == NLOPT_INVALID_ARGS || code == NLOPT_OUT_OF_MEMORY) {
       const char* detail = nlopt_get_errmsg(handle.get());
-      return {Termination::Failed, fmt::format("NLopt: {}{}{}", nlopt_result_to_string(code), detail ? ": " : "", detail ? detail : "")};
+      return {Termination::Failed, fmt::format("NLopt: {}{}{}", nlopt_result_to_string(code),
+                                               detail ? ": " : "", detail ? detail : "")};
     }
     if (code == NLOPT_MAXEVAL_REACHED) {
       if (objective.evaluations() >= options_.evaluations) continue;  // reported above
-      return {Termination::IterationLimit, fmt::format("{} evaluations: NLopt's own limit", objective.evaluations())};
+      return {Termination::IterationLimit,
+              fmt::format("{} evaluations: NLopt's own limit", objective.evaluations())};
     }
     // MLSL gives up when one of its local searches fails: it is sent on. Other global methods are done.
     const bool broken_off = algorithm.local && code < 0 && round < kMostBrokenOff;
     if (broken_off) continue;
     if (algorithm.global) return {Termination::Stalled, in_words(code, options_)};
 
-    const double gain = before == run.best_cost() ? 0.0 : (before - run.best_cost()) / std::abs(run.best_cost());
+    const double gain =
+        before == run.best_cost() ? 0.0 : (before - run.best_cost()) / std::abs(run.best_cost());
     before = run.best_cost();
     const bool more = round < options_.restarts && (round == 0 || gain > options_.restart_gain);
     if (more && !arrived(objective, options_)) continue;
-    return judge(run, objective, options_, fmt::format("{}, start {} gained {:.2g}", in_words(code, options_), round + 1, gain));
+    return judge(run, objective, options_,
+                 fmt::format("{}, start {} gained {:.2g}", in_words(code, options_), round + 1, gain));
   }
 }
 
@@ -300,12 +325,13 @@ std::vector<SolverEntry> nlopt_entries() {
     NloptOptions defaults;
     defaults.algorithm = &row;
     if (row.gradient && !row.global) defaults.evaluations = 10000;
-    if (row.global) defaults.ftol = 0;  // one generation without progress is no reason to stop
+    if (row.global) defaults.ftol = 0;            // one generation without progress is no reason to stop
     if (row.local) defaults.evaluations = 20000;  // its own work grows with their square
     if (row.least_xtol > 0) defaults.xtol = 10 * row.least_xtol;
     if (row.scalar_step) defaults.step = 0.25;
     defaults.memory = 100;
-    entries.push_back(make_entry<NloptSolver, NloptOptions>("nlopt:" + row.name, row.summary, row.stochastic, defaults));
+    entries.push_back(
+        make_entry<NloptSolver, NloptOptions>("nlopt:" + row.name, row.summary, row.stochastic, defaults));
   }
   return entries;
 }

@@ -39,7 +39,8 @@ struct Testbed {
       const auto& p = list[static_cast<std::size_t>(i)];
       r[i] = scale * (x[i] - (p.nominal + 0.3 * (p.upper - p.nominal))) / half(i);
     }
-    for (Eigen::Index i = 0; i + 1 < x.size(); ++i) r[x.size() + i] = scale * (unit(x, i) + unit(x, i + 1)) * unit(x, i + 1);
+    for (Eigen::Index i = 0; i + 1 < x.size(); ++i)
+      r[x.size() + i] = scale * (unit(x, i) + unit(x, i + 1)) * unit(x, i + 1);
     if (x[0] > nan_above) r.setConstant(kNan);
   }
   void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const {
@@ -62,7 +63,9 @@ struct Testbed {
     const auto& p = list[static_cast<std::size_t>(i)];
     return p.upper > p.lower ? 0.5 * (p.upper - p.lower) : 1.0;
   }
-  double unit(const ConstVectorRef& x, Eigen::Index i) const { return (x[i] - list[static_cast<std::size_t>(i)].nominal) / half(i); }
+  double unit(const ConstVectorRef& x, Eigen::Index i) const {
+    return (x[i] - list[static_cast<std::size_t>(i)].nominal) / half(i);
+  }
 };
 
 Testbed testbed(int n) {
@@ -76,7 +79,9 @@ Testbed testbed(int n) {
 
 class Conformance : public ::testing::TestWithParam<std::string> {
  protected:
-  Result run(const Problem& problem, const SolveOptions& options) const { return solve(problem, {GetParam(), {}}, problem.start(), options); }
+  Result run(const Problem& problem, const SolveOptions& options) const {
+    return solve(problem, {GetParam(), {}}, problem.start(), options);
+  }
   Result run(const Problem& problem, std::int64_t evaluations) const {
     SolveOptions options;
     options.budget.max_evaluations = evaluations;
@@ -117,8 +122,12 @@ void expect_sound(const Result& r, const Problem& problem) {
 }
 
 std::vector<Problem> problems() {
-  return {Problem(testbed(4)), make_classic_problem("rosenbrock", 4), make_classic_problem("corner", 5), make_classic_problem("powell", 4),
-          make_classic_problem("rastrigin", 3), make_classic_problem("step", 3)};
+  return {Problem(testbed(4)),
+          make_classic_problem("rosenbrock", 4),
+          make_classic_problem("corner", 5),
+          make_classic_problem("powell", 4),
+          make_classic_problem("rastrigin", 3),
+          make_classic_problem("step", 3)};
 }
 
 TEST_P(Conformance, SameSeedSameBitsInsideTheBox) {
@@ -312,7 +321,8 @@ std::vector<std::string> solver_names() {
 
 INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(solver_names()), [](const auto& tested) {
   std::string name = tested.param;
-  std::replace_if(name.begin(), name.end(), [](char c) { return c == ':' || c == '-'; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ':' || c == '-'; }, '_');
   return name;
 });
 
@@ -324,8 +334,10 @@ TEST(WhyNot, DerivativesAreAskedForByName) {
     EXPECT_THAT(r.message, HasSubstr("needs")) << name;
   }
   EXPECT_THAT(solve(rastrigin, {"ip", {}}, rastrigin.start(), {}).message, HasSubstr("hessian=lbfgs"));
-  EXPECT_EQ(solve(rastrigin, {"ip", {{"hessian", "lbfgs"}}}, rastrigin.start(), {}).termination, Termination::Converged);
-  EXPECT_NE(solve(rastrigin, {"nlopt:slsqp", {}}, rastrigin.start(), {}).termination, Termination::NotApplicable);
+  EXPECT_EQ(solve(rastrigin, {"ip", {{"hessian", "lbfgs"}}}, rastrigin.start(), {}).termination,
+            Termination::Converged);
+  EXPECT_NE(solve(rastrigin, {"nlopt:slsqp", {}}, rastrigin.start(), {}).termination,
+            Termination::NotApplicable);
   const Problem wide = make_classic_problem("rastrigin", 11);
   EXPECT_THAT(solve(wide, {"nlopt:ags", {}}, wide.start(), {}).message, HasSubstr("at most 10"));
 }

@@ -1,10 +1,10 @@
 // The adapters around Ceres, Ipopt and NLopt: what they reach, and that the known stalls are cured where they should be.
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include "datasets/vitko2024.hpp"
 #include "problems/calibration/calibration_problem.hpp"
@@ -18,9 +18,12 @@
 namespace odobench {
 namespace {
 
-SolverSpec spec(const std::string& text) { return parse_solver_list(text).front(); }
+SolverSpec spec(const std::string& text) {
+  return parse_solver_list(text).front();
+}
 
-Result solve_with(const Problem& problem, const std::string& solver, int evaluations = 100000, const Vector* start = nullptr) {
+Result solve_with(const Problem& problem, const std::string& solver, int evaluations = 100000,
+                  const Vector* start = nullptr) {
   SolveOptions options;
   options.budget.max_evaluations = evaluations;
   options.seed = 11;
@@ -29,7 +32,9 @@ Result solve_with(const Problem& problem, const std::string& solver, int evaluat
 
 // ---------------------------------------------------------------- compression of the residuals
 
-NormalEquations equations_of(const Matrix& j, const Vector& r) { return {r.squaredNorm(), j.transpose() * r, j.transpose() * j}; }
+NormalEquations equations_of(const Matrix& j, const Vector& r) {
+  return {r.squaredNorm(), j.transpose() * r, j.transpose() * j};
+}
 
 void expect_same_equations(const NormalEquations& e) {
   Matrix j;
@@ -40,7 +45,8 @@ void expect_same_equations(const NormalEquations& e) {
   const Vector size = e.jtj.diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < size.size(); ++i) {
     EXPECT_NEAR(j.col(i).dot(r), e.jtr[i], 1e-13 * size[i] * std::sqrt(e.cost));
-    for (Eigen::Index k = 0; k < size.size(); ++k) EXPECT_NEAR(j.col(i).dot(j.col(k)), e.jtj(i, k), 1e-13 * size[i] * size[k]);
+    for (Eigen::Index k = 0; k < size.size(); ++k)
+      EXPECT_NEAR(j.col(i).dot(j.col(k)), e.jtj(i, k), 1e-13 * size[i] * size[k]);
   }
   EXPECT_NEAR(r.squaredNorm(), e.cost, 1e-13 * e.cost);
 }
@@ -52,13 +58,15 @@ TEST(CeresCompression, KeepsNormalEquations) {
     Vector r(40);
     for (Eigen::Index i = 0; i < j.rows(); ++i) {
       r[i] = random.normal();
-      for (Eigen::Index k = 0; k < j.cols(); ++k) j(i, k) = random.normal() * std::pow(spread, static_cast<double>(k) / 5);
+      for (Eigen::Index k = 0; k < j.cols(); ++k)
+        j(i, k) = random.normal() * std::pow(spread, static_cast<double>(k) / 5);
     }
     expect_same_equations(equations_of(j, r));
     j.col(3) = 2.0 * j.col(1) - j.col(2);  // rank deficient
     expect_same_equations(equations_of(j, r));
-    expect_same_equations(equations_of(j, j.col(0) + j.col(5)));  // r in the range of J: an exact fit is ahead
-    j.col(4).setZero();                                           // a parameter without influence
+    expect_same_equations(
+        equations_of(j, j.col(0) + j.col(5)));  // r in the range of J: an exact fit is ahead
+    j.col(4).setZero();                         // a parameter without influence
     expect_same_equations(equations_of(j, r));
   }
 }
@@ -108,9 +116,10 @@ TEST_P(ReachesCorner, FromNominalAndRandomStarts) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ThirdParty, ReachesCorner,
-                         ::testing::Values("ceres", "ceres[strategy=dogleg]", "ceres[residuals=full]", "ip", "ip[hessian=gauss-newton]",
-                                           "ip[hessian=lbfgs]", "ip[mu_strategy=monotone]", "nlopt:slsqp", "nlopt:lbfgs", "nlopt:tnewton-precond",
-                                           "nlopt:var2", "nlopt:bobyqa"));
+                         ::testing::Values("ceres", "ceres[strategy=dogleg]", "ceres[residuals=full]", "ip",
+                                           "ip[hessian=gauss-newton]", "ip[hessian=lbfgs]",
+                                           "ip[mu_strategy=monotone]", "nlopt:slsqp", "nlopt:lbfgs",
+                                           "nlopt:tnewton-precond", "nlopt:var2", "nlopt:bobyqa"));
 
 TEST(Ceres, AloneStallsAndSaysSo) {
   const Problem p = make_classic_problem("corner", 12);
@@ -124,7 +133,8 @@ TEST(Ceres, AloneStallsAndSaysSo) {
 TEST(Nlopt, DerivativeFreeStopFarFromTheMinimumIsNotCalledConverged) {
   const Problem p = make_classic_problem("corner", 12);
   const double optimum = solve_with(p, "lm").cost;
-  for (const char* solver : {"nlopt:praxis", "nlopt:cobyla[xtol=1e-2,restarts=0]", "nlopt:neldermead[xtol=1e-2,restarts=0]"}) {
+  for (const char* solver :
+       {"nlopt:praxis", "nlopt:cobyla[xtol=1e-2,restarts=0]", "nlopt:neldermead[xtol=1e-2,restarts=0]"}) {
     const Result r = solve_with(p, solver);
     ASSERT_GT(r.cost, optimum * (1 + 1e-5)) << solver;
     EXPECT_NE(r.termination, Termination::Converged) << r.brief();
@@ -146,11 +156,13 @@ TEST(InteriorPoint, PutsActiveParametersOnTheirBounds) {
 
 TEST(ThirdParty, GlobalMethodsFindTheRastriginMinimum) {
   const Problem p = make_classic_problem("rastrigin", 2);
-  for (const char* solver : {"nlopt:stogo", "nlopt:stogo-rand", "nlopt:mlsl", "nlopt:mlsl-lds", "nlopt:mlsl[local=bobyqa]", "nlopt:direct",
-                             "nlopt:direct-l", "nlopt:direct-l-rand", "nlopt:direct-noscal", "nlopt:direct-orig", "nlopt:crs2[population=200]", "nlopt:isres",
-                             "nlopt:esch", "nlopt:ags"}) {
+  for (const char* solver :
+       {"nlopt:stogo", "nlopt:stogo-rand", "nlopt:mlsl", "nlopt:mlsl-lds", "nlopt:mlsl[local=bobyqa]",
+        "nlopt:direct", "nlopt:direct-l", "nlopt:direct-l-rand", "nlopt:direct-noscal", "nlopt:direct-orig",
+        "nlopt:crs2[population=200]", "nlopt:isres", "nlopt:esch", "nlopt:ags"}) {
     // MLSL's own work grows with the square of the evaluations.
-    const Result r = solve_with(p, solver, std::string(solver).find("mlsl") == std::string::npos ? 30000 : 2000);
+    const Result r =
+        solve_with(p, solver, std::string(solver).find("mlsl") == std::string::npos ? 30000 : 5000);
     EXPECT_LE(r.cost, 0.1) << r.brief();  // the next minimum is 0.99
   }
 }
@@ -158,12 +170,17 @@ TEST(ThirdParty, GlobalMethodsFindTheRastriginMinimum) {
 TEST(ThirdParty, OptionsReachTheLibraries) {
   const Problem p = make_classic_problem("ellipsoid", 6);
   const std::vector<std::pair<std::string, std::string>> pairs{
-      {"nlopt:bobyqa", "nlopt:bobyqa[step=0.01]"}, {"nlopt:crs2", "nlopt:crs2[population=300]"}, {"nlopt:lbfgs", "nlopt:lbfgs[memory=2]"},
-      {"nlopt:mlsl", "nlopt:mlsl[local=slsqp]"},   {"ceres", "ceres[radius=1e-2]"},              {"ip", "ip[mu_strategy=monotone]"},
+      {"nlopt:bobyqa", "nlopt:bobyqa[step=0.01]"},
+      {"nlopt:crs2", "nlopt:crs2[population=300]"},
+      {"nlopt:lbfgs", "nlopt:lbfgs[memory=2]"},
+      {"nlopt:mlsl", "nlopt:mlsl[local=slsqp]"},
+      {"ceres", "ceres[radius=1e-2]"},
+      {"ip", "ip[mu_strategy=monotone]"},
       {"ip[hessian=lbfgs]", "ip[hessian=lbfgs,memory=2]"}};
   for (const auto& [one, other] : pairs) {
     const Result a = solve_with(p, one, 400), b = solve_with(p, other, 400);
-    EXPECT_TRUE(a.cost != b.cost || a.counts.total() != b.counts.total()) << one << " and " << other << ": " << a.brief();
+    EXPECT_TRUE(a.cost != b.cost || a.counts.total() != b.counts.total())
+        << one << " and " << other << ": " << a.brief();
   }
   for (const char* solver : {"ceres[iterations=2]", "ip[iterations=2]", "nlopt:cobyla[evaluations=20]"}) {
     const Result r = solve_with(p, solver);
@@ -174,11 +191,40 @@ TEST(ThirdParty, OptionsReachTheLibraries) {
 
 TEST(ThirdParty, EveryApplicableNloptAlgorithmIsRegisteredOnce) {
   std::set<std::string> names;
-  for (const SolverEntry& entry : solver_registry()) EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-  for (const char* name : {"slsqp", "lbfgs", "tnewton", "tnewton-restart", "tnewton-precond", "tnewton-precond-restart", "var1", "var2", "mma",
-                           "ccsaq", "bobyqa", "newuoa", "cobyla", "neldermead", "sbplx", "praxis", "crs2", "isres", "esch", "direct", "direct-l",
-                           "direct-l-rand", "direct-noscal", "direct-l-noscal", "direct-l-rand-noscal", "direct-orig", "direct-l-orig", "stogo",
-                           "stogo-rand", "ags", "mlsl", "mlsl-lds"})
+  for (const SolverEntry& entry : solver_registry())
+    EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+  for (const char* name : {"slsqp",
+                           "lbfgs",
+                           "tnewton",
+                           "tnewton-restart",
+                           "tnewton-precond",
+                           "tnewton-precond-restart",
+                           "var1",
+                           "var2",
+                           "mma",
+                           "ccsaq",
+                           "bobyqa",
+                           "newuoa",
+                           "cobyla",
+                           "neldermead",
+                           "sbplx",
+                           "praxis",
+                           "crs2",
+                           "isres",
+                           "esch",
+                           "direct",
+                           "direct-l",
+                           "direct-l-rand",
+                           "direct-noscal",
+                           "direct-l-noscal",
+                           "direct-l-rand-noscal",
+                           "direct-orig",
+                           "direct-l-orig",
+                           "stogo",
+                           "stogo-rand",
+                           "ags",
+                           "mlsl",
+                           "mlsl-lds"})
     EXPECT_EQ(names.count("nlopt:" + std::string(name)), 1u) << name;
 }
 
@@ -193,15 +239,21 @@ TEST(ThirdParty, NothingIsPrinted) {
 
 // Ipopt and MUMPS are not safe in several threads, NLopt's generator is thread-local, StoGO has static variables.
 TEST(ThirdParty, ManyThreadsGiveTheBitsOfOne) {
-  const std::vector<std::string> solvers{"ip", "ip[hessian=lbfgs]", "ceres", "nlopt:crs2", "nlopt:stogo-rand", "nlopt:mlsl", "nlopt:praxis", "nlopt:isres"};
+  const std::vector<std::string> solvers{"ip",           "ip[hessian=lbfgs]", "ceres",
+                                         "nlopt:crs2",   "nlopt:stogo-rand",  "nlopt:mlsl",
+                                         "nlopt:praxis", "nlopt:isres"};
   const Problem p = make_classic_problem("rosenbrock", 5);
   constexpr int kRepeats = 6;
   std::vector<Result> serial, parallel(solvers.size() * kRepeats);
   for (const std::string& solver : solvers) serial.push_back(solve_with(p, solver, 1000));
-  tbb::task_arena arena(4);
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, parallel.size(), [&](std::size_t i) { parallel[i] = solve_with(p, solvers[i % solvers.size()], 1000); });
-  });
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (std::size_t i = next++; i < parallel.size(); i = next++)
+        parallel[i] = solve_with(p, solvers[i % solvers.size()], 1000);
+    });
+  for (std::thread& thread : threads) thread.join();
   for (std::size_t i = 0; i < parallel.size(); ++i) {
     const Result& expected = serial[i % solvers.size()];
     EXPECT_EQ(parallel[i].cost, expected.cost) << expected.solver;
@@ -256,7 +308,8 @@ const Problem& calibration() {
   static const Problem problem = [] {
     const Dataset set = import_vitko2024(testing::shared_folder() / "datasets" / "vitko2024");
     std::vector<ParameterInfo> parameters;
-    for (const RobotParameter& p : set.robot.parameters) parameters.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
+    for (const RobotParameter& p : set.robot.parameters)
+      parameters.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
     return Problem(CalibrationProblem(parameters, set.recordings));
   }();
   return problem;
@@ -268,14 +321,16 @@ void expect_optimum(const Result& r) {
   const auto& parameters = calibration().parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double x = r.x[static_cast<Eigen::Index>(i)];
-    EXPECT_TRUE(x >= parameters[i].lower && x <= parameters[i].upper) << r.solver << " " << parameters[i].name;
+    EXPECT_TRUE(x >= parameters[i].lower && x <= parameters[i].upper)
+        << r.solver << " " << parameters[i].name;
   }
   EXPECT_NEAR(r.cost, calibration().cost(r.x), 1e-12 * r.cost) << r.solver;
 }
 
 TEST(Calibration, GradientMethodsAndBobyqaReachTheOptimumFromNominal) {
   ODOBENCH_NEEDS_SHARED();
-  for (const char* solver : {"ceres", "ip", "ip[mu_strategy=monotone]", "nlopt:slsqp", "nlopt:lbfgs", "nlopt:bobyqa"}) {
+  for (const char* solver :
+       {"ceres", "ip", "ip[mu_strategy=monotone]", "nlopt:slsqp", "nlopt:lbfgs", "nlopt:bobyqa"}) {
     const Result r = solve_with(calibration(), solver, 20000);
     expect_optimum(r);
     EXPECT_EQ(r.termination, Termination::Converged) << r.brief();
