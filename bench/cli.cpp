@@ -74,7 +74,9 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
                    "such as published:lm, truth; a comma list, may be given again [nominal]")
       ->type_name("LIST")
       ->allow_extra_args(false);
-  evaluate->add_option("--tracks", a.evaluate.tracks, "write the paths that the parameters give as CSV, for plots")
+  evaluate
+      ->add_option("--tracks", a.evaluate.tracks,
+                   "write the paths that the parameters give as CSV, for plots")
       ->type_name("FILE.CSV");
   evaluate->add_flag("--overwrite", a.evaluate.overwrite, "replace a file of --tracks that is there");
   add_format(*evaluate, a.evaluate.format);

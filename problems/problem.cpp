@@ -17,14 +17,16 @@ void validate(const std::vector<ParameterInfo>& parameters) {
     if (!names.insert(p.name).second)
       throw std::invalid_argument(fmt::format("parameter '{}': the name occurs twice", p.name));
     if (!std::isfinite(p.lower) || !std::isfinite(p.nominal) || !std::isfinite(p.upper))
-      throw std::invalid_argument(fmt::format("parameter '{}': lower {}, nominal {}, upper {}; expected finite values",
-                                              p.name, p.lower, p.nominal, p.upper));
-    if (p.lower > p.upper)
       throw std::invalid_argument(
-          fmt::format("parameter '{}': lower {} > upper {}; expected lower <= upper", p.name, p.lower, p.upper));
+          fmt::format("parameter '{}': lower {}, nominal {}, upper {}; expected finite values", p.name,
+                      p.lower, p.nominal, p.upper));
+    if (p.lower > p.upper)
+      throw std::invalid_argument(fmt::format("parameter '{}': lower {} > upper {}; expected lower <= upper",
+                                              p.name, p.lower, p.upper));
     if (p.nominal < p.lower || p.nominal > p.upper)
-      throw std::invalid_argument(fmt::format("parameter '{}': nominal {} outside [{}, {}]; expected lower <= nominal <= upper",
-                                              p.name, p.nominal, p.lower, p.upper));
+      throw std::invalid_argument(
+          fmt::format("parameter '{}': nominal {} outside [{}, {}]; expected lower <= nominal <= upper",
+                      p.name, p.nominal, p.lower, p.upper));
   }
 }
 
@@ -43,7 +45,8 @@ void Problem::adopt(Interface& model) {
   const auto n = static_cast<Eigen::Index>(model.parameters.size());
   if (model.start.size() == 0) {
     model.start.resize(n);
-    for (Eigen::Index i = 0; i < n; ++i) model.start[i] = model.parameters[static_cast<std::size_t>(i)].nominal;
+    for (Eigen::Index i = 0; i < n; ++i)
+      model.start[i] = model.parameters[static_cast<std::size_t>(i)].nominal;
   }
   if (model.start.size() != n)
     throw std::invalid_argument(

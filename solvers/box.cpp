@@ -26,7 +26,8 @@ Vector Box::to_parameters(const ConstVectorRef& u) const {
     else if (v >= 1.0)
       x[i] = upper_[i];
     else  // measured from the nearer bound, so that points next to a bound keep their distance to it
-      x[i] = std::clamp(v < 0 ? lower_[i] + (v + 1.0) * half_[i] : upper_[i] - (1.0 - v) * half_[i], lower_[i], upper_[i]);
+      x[i] = std::clamp(v < 0 ? lower_[i] + (v + 1.0) * half_[i] : upper_[i] - (1.0 - v) * half_[i],
+                        lower_[i], upper_[i]);
   }
   return x;
 }
@@ -50,7 +51,8 @@ Vector Box::gradient_to_unit(const ConstVectorRef& g) const {
 
 Matrix Box::jacobian_to_unit(const ConstMatrixRef& j) const {
   Matrix out(j.rows(), dimension());
-  for (Eigen::Index k = 0; k < out.cols(); ++k) out.col(k) = j.col(parameter_index(k)) * half_[parameter_index(k)];
+  for (Eigen::Index k = 0; k < out.cols(); ++k)
+    out.col(k) = j.col(parameter_index(k)) * half_[parameter_index(k)];
   return out;
 }
 
@@ -61,7 +63,8 @@ NormalEquations Box::to_unit(const NormalEquations& e) const {
   out.jtj.resize(dimension(), dimension());
   for (Eigen::Index k = 0; k < dimension(); ++k)
     for (Eigen::Index l = 0; l < dimension(); ++l)
-      out.jtj(k, l) = e.jtj(parameter_index(k), parameter_index(l)) * half_[parameter_index(k)] * half_[parameter_index(l)];
+      out.jtj(k, l) = e.jtj(parameter_index(k), parameter_index(l)) * half_[parameter_index(k)] *
+                      half_[parameter_index(l)];
   return out;
 }
 

@@ -26,7 +26,7 @@ class Box {
   bool contains(const ConstVectorRef& x) const;
 
  private:
-  Vector lower_, upper_, half_;      // n
+  Vector lower_, upper_, half_;     // n
   std::vector<Eigen::Index> free_;  // m
 };
 

@@ -69,7 +69,8 @@ void LevenbergMarquardtOptions::bind(OptionBinder& binder) {
   binder.number("lambda", lambda, "initial damping, relative to the diagonal of J'J", 1e-12, 1e12);
   binder.number("gradient_tolerance", gradient_tolerance,
                 "stop when every free |J'r|_i / (|J_i| |r|) is at most this", 0, 1);
-  binder.number("cost_tolerance", cost_tolerance, "stop when the predicted decrease is at most this times the cost", 0, 1);
+  binder.number("cost_tolerance", cost_tolerance,
+                "stop when the predicted decrease is at most this times the cost", 0, 1);
   binder.integer("iterations", iterations, "iteration limit", 1);
 }
 
@@ -83,25 +84,28 @@ Outcome LevenbergMarquardt::minimise(Run& run) const {
   const Eigen::Index m = run.dimension();
   Vector u = run.start();
   NormalEquations e;
-  if (!std::isfinite(run.normal_equations(u, e))) return {Termination::Failed, "the cost at the start is not finite"};
+  if (!std::isfinite(run.normal_equations(u, e)))
+    return {Termination::Failed, "the cost at the start is not finite"};
   double lambda = options_.lambda;
   double growth = 2;
   for (int k = 0; k < options_.iterations; ++k) {
     if (e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
     const double projected = projected_cosine(u, e);
     if (projected <= options_.gradient_tolerance)
-      return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative)", projected, options_.gradient_tolerance)};
+      return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative)", projected,
+                                                  options_.gradient_tolerance)};
 
     Vector damping = e.jtj.diagonal();
     const double smallest = 1e-16 * std::max(damping.maxCoeff(), std::numeric_limits<double>::min());
     damping = damping.cwiseMax(smallest);
     Matrix h = e.jtj;
     h.diagonal() += lambda * damping;
-    const Vector d = solve_box_quadratic(h, e.jtr, Vector::Constant(m, -1.0) - u, Vector::Constant(m, 1.0) - u);
+    const Vector d =
+        solve_box_quadratic(h, e.jtr, Vector::Constant(m, -1.0) - u, Vector::Constant(m, 1.0) - u);
     const double predicted = -(2.0 * e.jtr.dot(d) + d.dot(e.jtj * d));
     if (!(predicted > options_.cost_tolerance * e.cost))
-      return {Termination::Converged,
-              fmt::format("predicted decrease {:.2g} <= {:.2g} times the cost", predicted / e.cost, options_.cost_tolerance)};
+      return {Termination::Converged, fmt::format("predicted decrease {:.2g} <= {:.2g} times the cost",
+                                                  predicted / e.cost, options_.cost_tolerance)};
     const Vector candidate = (u + d).cwiseMax(-1.0).cwiseMin(1.0);
     const double cost = run.cost(candidate);
     if (run.stop()) return {};
@@ -118,10 +122,12 @@ Outcome LevenbergMarquardt::minimise(Run& run) const {
       lambda *= growth;
       growth *= 2;
       if (lambda > 1e20)
-        return {Termination::Stalled, fmt::format("damping {:.2g} > 1e20, projected gradient {:.2g}", lambda, projected)};
+        return {Termination::Stalled,
+                fmt::format("damping {:.2g} > 1e20, projected gradient {:.2g}", lambda, projected)};
     }
   }
-  return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", options_.iterations, options_.iterations)};
+  return {Termination::IterationLimit,
+          fmt::format("{} iterations >= limit {}", options_.iterations, options_.iterations)};
 }
 
 SolverEntry levenberg_marquardt_entry() {

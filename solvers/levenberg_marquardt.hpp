@@ -12,7 +12,7 @@
 namespace odobench {
 
 struct LevenbergMarquardtOptions {
-  double lambda = 1e-3;       // initial damping, relative to diag(J'J)
+  double lambda = 1e-3;  // initial damping, relative to diag(J'J)
   double gradient_tolerance = 1e-10;
   double cost_tolerance = 1e-15;
   int iterations = 1000;

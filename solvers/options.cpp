@@ -26,8 +26,10 @@ bool parse_all(const std::string& text, T& out) {
 
 template <class T>
 std::string range_text(T low, T high) {
-  const bool open_low = low == std::numeric_limits<T>::lowest() || (std::is_floating_point_v<T> && std::isinf(static_cast<double>(low)));
-  const bool open_high = high == std::numeric_limits<T>::max() || (std::is_floating_point_v<T> && std::isinf(static_cast<double>(high)));
+  const bool open_low = low == std::numeric_limits<T>::lowest() ||
+                        (std::is_floating_point_v<T> && std::isinf(static_cast<double>(low)));
+  const bool open_high = high == std::numeric_limits<T>::max() ||
+                         (std::is_floating_point_v<T> && std::isinf(static_cast<double>(high)));
   if (open_low && open_high) return "any";
   if (open_high) return fmt::format(">= {}", low);
   if (open_low) return fmt::format("<= {}", high);
@@ -41,14 +43,16 @@ std::vector<std::string> split_outside_brackets(std::string_view text) {
     if (c == '[') ++depth;
     if (c == ']') --depth;
     if (depth < 0 || depth > 1)
-      throw std::invalid_argument(fmt::format("solver list '{}': unbalanced brackets; expected name[option=value,...]", text));
+      throw std::invalid_argument(
+          fmt::format("solver list '{}': unbalanced brackets; expected name[option=value,...]", text));
     if (c == ',' && depth == 0)
       parts.emplace_back();
     else
       parts.back() += c;
   }
   if (depth != 0)
-    throw std::invalid_argument(fmt::format("solver list '{}': unbalanced brackets; expected name[option=value,...]", text));
+    throw std::invalid_argument(
+        fmt::format("solver list '{}': unbalanced brackets; expected name[option=value,...]", text));
   return parts;
 }
 
@@ -57,7 +61,8 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
   const auto open = part.find('[');
   spec.name = trimmed(std::string_view(part).substr(0, open));
   if (spec.name.empty())
-    throw std::invalid_argument(fmt::format("solver list '{}': an empty solver name; expected e.g. lm,pso[swarm=60]", whole));
+    throw std::invalid_argument(
+        fmt::format("solver list '{}': an empty solver name; expected e.g. lm,pso[swarm=60]", whole));
   if (open == std::string::npos) return spec;
   if (trimmed(part).back() != ']')
     throw std::invalid_argument(fmt::format("solver list '{}': text after ']' in '{}'", whole, part));
@@ -67,7 +72,8 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
     const std::string item = inside.substr(begin, end - begin);
     const auto equals = item.find('=');
     if (equals == std::string::npos || trimmed(item.substr(0, equals)).empty())
-      throw std::invalid_argument(fmt::format("solver '{}': option '{}'; expected name=value", spec.name, trimmed(item)));
+      throw std::invalid_argument(
+          fmt::format("solver '{}': option '{}'; expected name=value", spec.name, trimmed(item)));
     const std::string key = trimmed(item.substr(0, equals));
     if (!spec.options.emplace(key, trimmed(item.substr(equals + 1))).second)
       throw std::invalid_argument(fmt::format("solver '{}': option '{}' is given twice", spec.name, key));
@@ -121,7 +127,8 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 
 void OptionBinder::number(std::string name, double& field, std::string help, double lowest, double highest) {
   const std::string allowed = range_text(lowest, highest);
-  entries_.push_back({std::move(name), std::move(help), allowed, [&field] { return fmt::format("{}", field); },
+  entries_.push_back({std::move(name), std::move(help), allowed,
+                      [&field] { return fmt::format("{}", field); },
                       [&field, lowest, highest, allowed](const std::string& text) -> std::string {
                         double value = 0;
                         if (!parse_all(text, value) || std::isnan(value)) return "expected a number";
@@ -133,7 +140,8 @@ void OptionBinder::number(std::string name, double& field, std::string help, dou
 
 void OptionBinder::integer(std::string name, int& field, std::string help, int lowest, int highest) {
   const std::string allowed = range_text(lowest, highest);
-  entries_.push_back({std::move(name), std::move(help), allowed, [&field] { return fmt::format("{}", field); },
+  entries_.push_back({std::move(name), std::move(help), allowed,
+                      [&field] { return fmt::format("{}", field); },
                       [&field, lowest, highest, allowed](const std::string& text) -> std::string {
                         int value = 0;
                         if (!parse_all(text, value)) return "expected a whole number";
@@ -144,7 +152,8 @@ void OptionBinder::integer(std::string name, int& field, std::string help, int l
 }
 
 void OptionBinder::flag(std::string name, bool& field, std::string help) {
-  entries_.push_back({std::move(name), std::move(help), "true|false", [&field] { return field ? "true" : "false"; },
+  entries_.push_back({std::move(name), std::move(help), "true|false",
+                      [&field] { return field ? "true" : "false"; },
                       [&field](const std::string& text) -> std::string {
                         if (text != "true" && text != "false") return "expected true or false";
                         field = text == "true";
@@ -152,11 +161,13 @@ void OptionBinder::flag(std::string name, bool& field, std::string help) {
                       }});
 }
 
-void OptionBinder::choice(std::string name, std::string& field, std::string help, std::vector<std::string> allowed) {
+void OptionBinder::choice(std::string name, std::string& field, std::string help,
+                          std::vector<std::string> allowed) {
   const std::string list = fmt::format("{}", fmt::join(allowed, "|"));
   entries_.push_back({std::move(name), std::move(help), list, [&field] { return field; },
                       [&field, allowed = std::move(allowed), list](const std::string& text) -> std::string {
-                        if (std::find(allowed.begin(), allowed.end(), text) == allowed.end()) return "expected " + list;
+                        if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
+                          return "expected " + list;
                         field = text;
                         return {};
                       }});
@@ -164,14 +175,16 @@ void OptionBinder::choice(std::string name, std::string& field, std::string help
 
 void OptionBinder::apply(const std::string& solver, const OptionValues& values) {
   for (const auto& [key, text] : values) {
-    const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == key; });
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == key; });
     if (entry == entries_.end()) {
       std::vector<std::string> names;
       for (const Entry& e : entries_) names.push_back(e.name);
       const std::string near = nearest_name(key, names);
-      throw std::invalid_argument(fmt::format("solver '{}': unknown option '{}'{}; known: {}", solver, key,
-                                              near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
-                                              names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+      throw std::invalid_argument(
+          fmt::format("solver '{}': unknown option '{}'{}; known: {}", solver, key,
+                      near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                      names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
     }
     const std::string wrong = entry->set(text);
     if (!wrong.empty())

@@ -14,8 +14,8 @@ using OptionValues = std::map<std::string, std::string>;
 
 // "pso[swarm=60]" taken apart.
 struct SolverSpec {
-  std::string name;      // "pso", "nlopt:bobyqa"
-  OptionValues options;  // {{"swarm","60"}}
+  std::string name;          // "pso", "nlopt:bobyqa"
+  OptionValues options;      // {{"swarm","60"}}
   std::string text() const;  // canonical: options in alphabetical order; the label of tables
 };
 

@@ -34,7 +34,8 @@ const std::vector<SolverEntry>& solver_registry() {
 
 const SolverEntry& find_solver(const std::string& name) {
   const auto& rows = solver_registry();
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const SolverEntry& e) { return e.name == name; });
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const SolverEntry& e) { return e.name == name; });
   if (row != rows.end()) return *row;
   std::vector<std::string> names;
   for (const SolverEntry& e : rows) names.push_back(e.name);

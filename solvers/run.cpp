@@ -24,16 +24,26 @@ void thin(std::vector<TraceEntry>& trace) {
 
 std::string to_string(Termination termination) {
   switch (termination) {
-    case Termination::NotStarted: return "not_started";
-    case Termination::Converged: return "converged";
-    case Termination::Stalled: return "stalled";
-    case Termination::IterationLimit: return "iteration_limit";
-    case Termination::TargetReached: return "target_reached";
-    case Termination::MaxEvaluations: return "max_evaluations";
-    case Termination::TimeLimit: return "time_limit";
-    case Termination::Interrupted: return "interrupted";
-    case Termination::Failed: return "failed";
-    case Termination::NotApplicable: return "not_applicable";
+    case Termination::NotStarted:
+      return "not_started";
+    case Termination::Converged:
+      return "converged";
+    case Termination::Stalled:
+      return "stalled";
+    case Termination::IterationLimit:
+      return "iteration_limit";
+    case Termination::TargetReached:
+      return "target_reached";
+    case Termination::MaxEvaluations:
+      return "max_evaluations";
+    case Termination::TimeLimit:
+      return "time_limit";
+    case Termination::Interrupted:
+      return "interrupted";
+    case Termination::Failed:
+      return "failed";
+    case Termination::NotApplicable:
+      return "not_applicable";
   }
   return "unknown";
 }
@@ -74,11 +84,16 @@ bool Run::stop() {
 
 std::string Run::stop_message() const {
   switch (stop_reason_) {
-    case Termination::TargetReached: return fmt::format("cost {:.10g} <= target {:.10g}", best_cost_, budget_.target_cost);
-    case Termination::MaxEvaluations: return fmt::format("{} evaluations >= limit {}", evaluations(), budget_.max_evaluations);
-    case Termination::TimeLimit: return fmt::format("time limit of {:g} s is used up", budget_.max_seconds);
-    case Termination::Interrupted: return fmt::format("interrupted after {} evaluations", evaluations());
-    default: return {};
+    case Termination::TargetReached:
+      return fmt::format("cost {:.10g} <= target {:.10g}", best_cost_, budget_.target_cost);
+    case Termination::MaxEvaluations:
+      return fmt::format("{} evaluations >= limit {}", evaluations(), budget_.max_evaluations);
+    case Termination::TimeLimit:
+      return fmt::format("time limit of {:g} s is used up", budget_.max_seconds);
+    case Termination::Interrupted:
+      return fmt::format("interrupted after {} evaluations", evaluations());
+    default:
+      return {};
   }
 }
 
@@ -172,7 +187,8 @@ void Run::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) {
     } else {
       slice(0, width);
     }
-    for (Eigen::Index k = 0; k < width; ++k) costs[done + k] = accept(values[k], x.col(done + k), candidates.col(done + k));
+    for (Eigen::Index k = 0; k < width; ++k)
+      costs[done + k] = accept(values[k], x.col(done + k), candidates.col(done + k));
   }
 }
 

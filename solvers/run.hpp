@@ -24,7 +24,7 @@ enum class Termination {
   MaxEvaluations,
   TimeLimit,
   Interrupted,
-  Failed,     // the method broke down; the best point so far is still reported
+  Failed,  // the method broke down; the best point so far is still reported
   NotApplicable
 };
 std::string to_string(Termination termination);  // "converged", "max_evaluations", ...

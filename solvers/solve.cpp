@@ -10,7 +10,8 @@ namespace {
 Budget main_phase(Budget budget, bool polished) {
   if (!polished) return budget;
   if (budget.max_evaluations > 0)
-    budget.max_evaluations = std::max<std::int64_t>(1, budget.max_evaluations - std::min<std::int64_t>(budget.max_evaluations / 10, 500));
+    budget.max_evaluations = std::max<std::int64_t>(
+        1, budget.max_evaluations - std::min<std::int64_t>(budget.max_evaluations / 10, 500));
   budget.max_seconds *= 0.9;
   return budget;
 }
@@ -24,13 +25,15 @@ Outcome run_phase(const Solver& solver, Run& run) {
   }
   if (run.stop_reason() != Termination::NotStarted) return {run.stop_reason(), run.stop_message()};
   // A target met by the last evaluation of a method that then ended by itself.
-  if (run.has_best() && run.best_cost() <= run.budget().target_cost && run.stop()) return {run.stop_reason(), run.stop_message()};
+  if (run.has_best() && run.best_cost() <= run.budget().target_cost && run.stop())
+    return {run.stop_reason(), run.stop_message()};
   return outcome;
 }
 
 }  // namespace
 
-Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start, const SolveOptions& options) {
+Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start,
+             const SolveOptions& options) {
   Result result;
   result.solver = spec.text();
   const std::unique_ptr<Solver> solver = find_solver(spec.name).make(spec.options, &result.options);
@@ -45,7 +48,8 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
     return result;
   }
 
-  Run run(problem, main_phase(options.budget, polished), start, options.seed, options.interrupt, options.observer, options.threads);
+  Run run(problem, main_phase(options.budget, polished), start, options.seed, options.interrupt,
+          options.observer, options.threads);
   Outcome outcome;
   if (run.dimension() == 0) {  // every parameter is held fixed: one evaluation is the whole answer
     run.cost(run.start());
@@ -58,7 +62,8 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
     result.cost_before_polish = run.best_cost();
     run.restart_from_best(options.budget);
     const Outcome polish = run_phase(*polisher, run);
-    outcome = {polish.termination, fmt::format("{}; polished by {}: {}", outcome.message, options.polish.text(), polish.message)};
+    outcome = {polish.termination,
+               fmt::format("{}; polished by {}: {}", outcome.message, options.polish.text(), polish.message)};
   }
   result.termination = outcome.termination;
   result.message = outcome.message;
@@ -88,14 +93,15 @@ Vector random_start(const Problem& problem, std::uint64_t seed) {
 std::string Result::brief() const {
   if (termination == Termination::NotStarted) return "(not run)";
   if (!usable()) return fmt::format("{}: {}: {}", solver, to_string(termination), message);
-  return fmt::format("{}: {:.9g} after {} evaluations, {:.3g} s, {}: {}", solver, cost, counts.total(), seconds,
-                     to_string(termination), message);
+  return fmt::format("{}: {:.9g} after {} evaluations, {:.3g} s, {}: {}", solver, cost, counts.total(),
+                     seconds, to_string(termination), message);
 }
 
 std::string Result::full() const {
   std::string text = brief() + "\n";
-  text += fmt::format("  cost calls {}, gradients {}, residuals {}, normal equations {}, iterations {}, non-finite {}\n",
-                      counts.cost, counts.gradient, counts.residuals, counts.normal_equations, iterations, non_finite);
+  text += fmt::format(
+      "  cost calls {}, gradients {}, residuals {}, normal equations {}, iterations {}, non-finite {}\n",
+      counts.cost, counts.gradient, counts.residuals, counts.normal_equations, iterations, non_finite);
   for (Eigen::Index i = 0; i < x.size(); ++i) text += fmt::format("  x[{}] = {:.17g}\n", i, x[i]);
   return text;
 }

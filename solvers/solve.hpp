@@ -17,7 +17,7 @@ struct SolveOptions {
 };
 
 struct Result {
-  std::string solver;   // label: name with the options given
+  std::string solver;    // label: name with the options given
   OptionValues options;  // every option with the value in force
   Termination termination = Termination::NotStarted;
   std::string message;
@@ -38,7 +38,8 @@ struct Result {
 // `start` in parameter units (n). Throws std::invalid_argument on unknown solvers or bad options; everything that
 // happens while running is in the result: a method that cannot run gives NotApplicable with the reason, a method that
 // throws gives Failed with its message and the best point so far.
-Result solve(const Problem& problem, const SolverSpec& solver, const Vector& start, const SolveOptions& options);
+Result solve(const Problem& problem, const SolverSpec& solver, const Vector& start,
+             const SolveOptions& options);
 
 // A point drawn uniformly from the box.
 Vector random_start(const Problem& problem, std::uint64_t seed);

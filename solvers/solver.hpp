@@ -49,7 +49,8 @@ SolverEntry make_entry(std::string name, std::string summary, bool stochastic, O
     options.bind(binder);
     return binder.describe();
   };
-  entry.make = [name, defaults](const OptionValues& values, OptionValues* in_force) -> std::unique_ptr<Solver> {
+  entry.make = [name, defaults](const OptionValues& values,
+                                OptionValues* in_force) -> std::unique_ptr<Solver> {
     Options options = defaults;
     OptionBinder binder;
     options.bind(binder);

@@ -18,15 +18,19 @@ using testing::synthetic_recording;
 std::vector<Recording> some_recordings() {
   // Long ones with several blocks, and lengths around the lane counts where blocks and tails begin and end.
   std::vector<Recording> list{synthetic_recording(2400, 0.016, 1), synthetic_recording(777, 0.02, 2)};
-  for (int samples : {2, 3, 4, 5, 8, 9, 10, 16, 17, 18, 33}) list.push_back(synthetic_recording(samples, 0.05, samples));
+  for (int samples : {2, 3, 4, 5, 8, 9, 10, 16, 17, 18, 33})
+    list.push_back(synthetic_recording(samples, 0.05, samples));
   return list;
 }
 
-Vector nominal_vector() { return Problem(CalibrationProblem(nominal_robot(), some_recordings())).start(); }
+Vector nominal_vector() {
+  return Problem(CalibrationProblem(nominal_robot(), some_recordings())).start();
+}
 
 Vector perturbed(int variant) {
   Vector z = nominal_vector();
-  for (Eigen::Index i = 0; i < z.size(); ++i) z[i] *= 1.0 + 0.05 * std::sin(1.0 + 2.3 * static_cast<double>(i) + variant);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    z[i] *= 1.0 + 0.05 * std::sin(1.0 + 2.3 * static_cast<double>(i) + variant);
   return z;
 }
 
@@ -71,7 +75,8 @@ TEST(Calibration, NormalEquationsAreThoseOfTheDenseJacobian) {
     for (Eigen::Index i = 0; i < 12; ++i) {
       EXPECT_NEAR(e.jtr[i], jtr[i], 1e-11 * std::sqrt(jtj(i, i) * r.squaredNorm())) << k.name << " " << i;
       for (Eigen::Index l = 0; l < 12; ++l)
-        EXPECT_NEAR(e.jtj(i, l), jtj(i, l), 1e-11 * std::sqrt(jtj(i, i) * jtj(l, l))) << k.name << " " << i << " " << l;
+        EXPECT_NEAR(e.jtj(i, l), jtj(i, l), 1e-11 * std::sqrt(jtj(i, i) * jtj(l, l)))
+            << k.name << " " << i << " " << l;
     }
   }
 }
@@ -100,7 +105,8 @@ TEST(Calibration, BatchHasTheBitsOfSingleEvaluations) {
   for (Eigen::Index k = 0; k < candidates.cols(); ++k) candidates.col(k) = perturbed(static_cast<int>(k));
   Vector costs(13);
   problem.batch_cost(candidates, costs);
-  for (Eigen::Index k = 0; k < candidates.cols(); ++k) EXPECT_EQ(costs[k], problem.cost(candidates.col(k))) << k;
+  for (Eigen::Index k = 0; k < candidates.cols(); ++k)
+    EXPECT_EQ(costs[k], problem.cost(candidates.col(k))) << k;
 }
 
 TEST(Calibration, NotANumberComesOutAsNotANumber) {
@@ -111,7 +117,8 @@ TEST(Calibration, NotANumberComesOutAsNotANumber) {
 }
 
 TEST(Calibration, RefusesWhatIsNoCalibrationProblem) {
-  const auto message = [](std::vector<ParameterInfo> parameters, std::vector<Recording> recordings) -> std::string {
+  const auto message = [](std::vector<ParameterInfo> parameters,
+                          std::vector<Recording> recordings) -> std::string {
     try {
       const CalibrationProblem problem(std::move(parameters), std::move(recordings));
     } catch (const std::invalid_argument& error) {
@@ -126,7 +133,8 @@ TEST(Calibration, RefusesWhatIsNoCalibrationProblem) {
   auto at_origin = nominal_robot();
   at_origin[2].lower = at_origin[6].lower = -1;
   at_origin[2].upper = at_origin[6].upper = 1;
-  EXPECT_EQ(message({}, some_recordings()), "calibration: 0 parameters, expected the 12 of a1..a4, b1..b4, r1..r4");
+  EXPECT_EQ(message({}, some_recordings()),
+            "calibration: 0 parameters, expected the 12 of a1..a4, b1..b4, r1..r4");
   EXPECT_EQ(message(swapped, some_recordings()), "calibration: parameter 1 is 'a2', expected 'a1'");
   EXPECT_NE(message(inverted, some_recordings()).find("'b2': lower"), std::string::npos);
   EXPECT_NE(message(at_origin, some_recordings()).find("wheel 3 stand at the origin"), std::string::npos);

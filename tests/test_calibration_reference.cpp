@@ -24,7 +24,8 @@ Vector vector_of(const json& list) {
 }
 
 void expect_relative(double value, double expected, double tolerance, const std::string& what) {
-  EXPECT_LE(std::abs(value - expected), tolerance * std::abs(expected)) << what << ": " << value << " against " << expected;
+  EXPECT_LE(std::abs(value - expected), tolerance * std::abs(expected))
+      << what << ": " << value << " against " << expected;
 }
 
 // Cost of both forms, their agreement, and the gradient.
@@ -43,7 +44,8 @@ void check_point(const json& point, const std::string& name) {
   const Vector nominal = Problem(testing::vitko_model()).start(), expected = vector_of(point.at("dJ_dz"));
   for (Eigen::Index i = 0; i < z.size(); ++i) {
     const double rounding = 1e-9 * std::abs(nominal[i]) * std::sqrt(e.jtj(i, i) * e.cost);
-    EXPECT_NEAR(2 * e.jtr[i] * nominal[i], expected[i], 1e-5 * std::abs(expected[i]) + rounding) << name << " dJ/dz " << i;
+    EXPECT_NEAR(2 * e.jtr[i] * nominal[i], expected[i], 1e-5 * std::abs(expected[i]) + rounding)
+        << name << " dJ/dz " << i;
   }
 }
 
@@ -67,13 +69,15 @@ TEST(VitkoReference, ErrorTablesOfPublishedSets) {
       const std::string what = name + " " + e.recording;
       expect_relative(e.x, cell.at("x").at("per_repetition").at(repetition).get<double>(), 1e-8, what + " x");
       expect_relative(e.y, cell.at("y").at("per_repetition").at(repetition).get<double>(), 1e-8, what + " y");
-      expect_relative(e.theta, cell.at("theta").at("per_repetition").at(repetition).get<double>(), 1e-8, what + " theta");
+      expect_relative(e.theta, cell.at("theta").at("per_repetition").at(repetition).get<double>(), 1e-8,
+                      what + " theta");
     }
   }
 }
 
 // Per-repetition maxima of one table cell.
-std::vector<double> maxima(const std::vector<MaxErrors>& errors, const std::string& trajectory, const std::string& variable) {
+std::vector<double> maxima(const std::vector<MaxErrors>& errors, const std::string& trajectory,
+                           const std::string& variable) {
   std::vector<double> list;
   for (const MaxErrors& e : errors)
     if (e.trajectory == trajectory) list.push_back(variable == "x" ? e.x : variable == "y" ? e.y : e.theta);
@@ -87,7 +91,9 @@ double cell_value(const std::vector<double>& e, const std::string& stat) {
     largest = std::max(largest, v);
   }
   for (double v : e) square += (v - mean) * (v - mean);
-  return stat == "e_max" ? largest : stat == "e_sr" ? mean : std::sqrt(square / static_cast<double>(e.size() - 1));
+  return stat == "e_max"  ? largest
+         : stat == "e_sr" ? mean
+                          : std::sqrt(square / static_cast<double>(e.size() - 1));
 }
 
 TEST(VitkoReference, NominalTablesOfTheThesisToEveryPrintedDigit) {
@@ -103,13 +109,15 @@ TEST(VitkoReference, NominalTablesOfTheThesisToEveryPrintedDigit) {
   const json published = read_reference("published_tables_vitko2024.json");
   for (const json& cell : published.at("cells")) {
     if (cell.at("method") != "NOM" || cell.at("kind") != "own") continue;
-    const std::string trajectory = cell.at("trajectory_name"), variable = cell.at("variable"), stat = cell.at("stat");
+    const std::string trajectory = cell.at("trajectory_name"), variable = cell.at("variable"),
+                      stat = cell.at("stat");
     const double printed = cell.at("value").get<double>();
     const double ours = cell_value(maxima(errors, trajectory, variable), stat);
     const std::string what = trajectory + " " + variable + " " + stat;
     if (trajectory == "line_y" && variable == "y" && stat != "e_max") {
       EXPECT_GT(std::abs(ours - printed), 0.5e-6) << what << " needs no explanation";
-      EXPECT_NEAR(cell_value(maxima(shifted_errors, trajectory, variable), stat), printed, 0.5000001e-6) << what;
+      EXPECT_NEAR(cell_value(maxima(shifted_errors, trajectory, variable), stat), printed, 0.5000001e-6)
+          << what;
       ++explained;
     } else if ((trajectory == "line_x" && variable == "x" && stat == "e_max") ||
                (trajectory == "circle_cw" && variable == "theta" && stat == "e_sr")) {
@@ -130,7 +138,8 @@ TEST(VitkoReference, LmReachesTheOptimumFromNominalAndRandomStarts) {
   const Problem problem(testing::vitko_model());
   const Box box(problem.parameters());
   for (std::uint64_t start = 0; start <= 20; ++start) {
-    const Result r = solve(problem, {"lm", {}}, start == 0 ? problem.start() : random_start(problem, start), {});
+    const Result r =
+        solve(problem, {"lm", {}}, start == 0 ? problem.start() : random_start(problem, start), {});
     EXPECT_LE(r.cost, testing::kVitkoLimit) << "start " << start << ": " << r.brief();
     EXPECT_GE(r.cost, testing::kVitkoOptimum * (1 - 1e-9)) << "start " << start;
     EXPECT_TRUE(box.contains(r.x)) << "start " << start;

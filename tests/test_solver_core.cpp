@@ -36,17 +36,29 @@ TEST(Options, SplitsSolverListsOutsideBrackets) {
 }
 
 TEST(Options, RefusesMalformedSolverLists) {
-  for (const char* text : {"", "lm,", "pso[swarm=60", "pso]swarm[", "pso[[a=1]]", "pso[swarm]", "pso[=3]", "pso[a=1,a=2]", "pso[a=1]x", "pso[a=1,]"})
+  for (const char* text : {"", "lm,", "pso[swarm=60", "pso]swarm[", "pso[[a=1]]", "pso[swarm]", "pso[=3]",
+                           "pso[a=1,a=2]", "pso[a=1]x", "pso[a=1,]"})
     EXPECT_NE(refusal([&] { parse_solver_list(text); }), "accepted") << text;
 }
 
 TEST(Options, UnknownNamesSuggestTheNearest) {
   EXPECT_THAT(refusal([] { find_solver("lmm"); }), HasSubstr("unknown solver 'lmm', did you mean 'lm'?"));
-  EXPECT_THAT(refusal([] { find_solver("lm").make({{"lamda", "1"}}, nullptr); }),
+  EXPECT_THAT(refusal([] {
+                find_solver("lm").make({{"lamda", "1"}}, nullptr);
+              }),
               HasSubstr("unknown option 'lamda', did you mean 'lambda'?; known: lambda"));
-  EXPECT_THAT(refusal([] { find_solver("lm").make({{"lambda", "-1"}}, nullptr); }), HasSubstr("option lambda=-1; expected"));
-  EXPECT_THAT(refusal([] { find_solver("lm").make({{"lambda", "1e-3x"}}, nullptr); }), HasSubstr("expected a number"));
-  EXPECT_THAT(refusal([] { find_solver("lm").make({{"iterations", "2.5"}}, nullptr); }), HasSubstr("expected a whole number"));
+  EXPECT_THAT(refusal([] {
+                find_solver("lm").make({{"lambda", "-1"}}, nullptr);
+              }),
+              HasSubstr("option lambda=-1; expected"));
+  EXPECT_THAT(refusal([] {
+                find_solver("lm").make({{"lambda", "1e-3x"}}, nullptr);
+              }),
+              HasSubstr("expected a number"));
+  EXPECT_THAT(refusal([] {
+                find_solver("lm").make({{"iterations", "2.5"}}, nullptr);
+              }),
+              HasSubstr("expected a whole number"));
 }
 
 TEST(Options, ValuesInForceCarryDefaultsAndGivenValues) {
@@ -69,12 +81,15 @@ TEST(Seeds, DependOnEveryPartAndOnTheSplit) {
 }
 
 TEST(BoxScaling, BoundsAreExactAndPointsStayInside) {
-  const std::vector<ParameterInfo> parameters{
-      {"p", "m", 0.1125, 0.1125 * 0.95, 0.1125 * 1.05}, {"fixed", "m", 3, 3, 3}, {"q", "m", -0.1125, -0.1125 * 1.05, -0.1125 * 0.95}};
+  const std::vector<ParameterInfo> parameters{{"p", "m", 0.1125, 0.1125 * 0.95, 0.1125 * 1.05},
+                                              {"fixed", "m", 3, 3, 3},
+                                              {"q", "m", -0.1125, -0.1125 * 1.05, -0.1125 * 0.95}};
   const Box box(parameters);
   ASSERT_EQ(box.dimension(), 2);
-  EXPECT_EQ(box.to_parameters(Eigen::Vector2d(-1, 1)), Eigen::Vector3d(parameters[0].lower, 3, parameters[2].upper));
-  EXPECT_EQ(box.to_parameters(Eigen::Vector2d(1.5, -7)), Eigen::Vector3d(parameters[0].upper, 3, parameters[2].lower));
+  EXPECT_EQ(box.to_parameters(Eigen::Vector2d(-1, 1)),
+            Eigen::Vector3d(parameters[0].lower, 3, parameters[2].upper));
+  EXPECT_EQ(box.to_parameters(Eigen::Vector2d(1.5, -7)),
+            Eigen::Vector3d(parameters[0].upper, 3, parameters[2].lower));
   Random random(7);
   for (int k = 0; k < 2000; ++k) {
     const double near = k % 2 == 0 ? 1.0 : 1e-15;  // also points next to a bound
@@ -145,7 +160,8 @@ TEST(Driver, TraceIsBoundedAndEndsAtTheBest) {
   for (int k = 0; k < 5000; ++k) run.cost(Vector::Constant(2, 1.0 - k * 1e-4));
   EXPECT_LE(run.trace().size(), 400u);
   EXPECT_EQ(run.trace().back().cost, run.best_cost());
-  for (std::size_t i = 1; i < run.trace().size(); ++i) EXPECT_LT(run.trace()[i].cost, run.trace()[i - 1].cost);
+  for (std::size_t i = 1; i < run.trace().size(); ++i)
+    EXPECT_LT(run.trace()[i].cost, run.trace()[i - 1].cost);
 }
 
 TEST(Driver, PolishGoesOnFromTheBestWithinTheSameBudget) {
@@ -178,12 +194,14 @@ TEST(Driver, AllParametersFixedIsOneEvaluation) {
 }
 
 // KKT conditions of min g'd + 1/2 d'Hd on a box, to `tolerance` of the gradient.
-void expect_kkt(const Matrix& h, const Vector& g, const Vector& low, const Vector& high, const Vector& d, double tolerance) {
+void expect_kkt(const Matrix& h, const Vector& g, const Vector& low, const Vector& high, const Vector& d,
+                double tolerance) {
   const Vector reduced = g + h * d;
   for (Eigen::Index i = 0; i < g.size(); ++i) {
     ASSERT_GE(d[i], low[i]);
     ASSERT_LE(d[i], high[i]);
-    const double scale = tolerance * std::sqrt(h(i, i)) * (g.array() / h.diagonal().array().sqrt()).matrix().norm();
+    const double scale =
+        tolerance * std::sqrt(h(i, i)) * (g.array() / h.diagonal().array().sqrt()).matrix().norm();
     if (d[i] > low[i]) {
       ASSERT_LE(reduced[i], scale) << i;
     }
@@ -209,7 +227,8 @@ TEST(BoxQuadratic, SatisfiesKktOnRandomIllConditionedModels) {
       low[i] = random.uniform() < 0.2 ? 0.0 : -random.uniform();
       high[i] = random.uniform() < 0.2 ? 0.0 : random.uniform();
     }
-    expect_kkt(0.5 * (h + h.transpose()), g, low, high, solve_box_quadratic(0.5 * (h + h.transpose()), g, low, high), 1e-9);
+    expect_kkt(0.5 * (h + h.transpose()), g, low, high,
+               solve_box_quadratic(0.5 * (h + h.transpose()), g, low, high), 1e-9);
   }
 }
 
@@ -232,7 +251,8 @@ TEST(LevenbergMarquardt, ScalingTheCostChangesNothing) {
   const Problem plain = make_classic_problem("corner", 12);
   const double factor = std::ldexp(1.0, -27);  // a power of two: the very same bits must come out
   const Problem scaled(Scaled{plain, factor});
-  const Result a = solve(plain, {"lm", {}}, plain.start(), {}), b = solve(scaled, {"lm", {}}, plain.start(), {});
+  const Result a = solve(plain, {"lm", {}}, plain.start(), {}),
+               b = solve(scaled, {"lm", {}}, plain.start(), {});
   EXPECT_EQ(a.x, b.x);
   EXPECT_EQ(a.cost * factor, b.cost);
   EXPECT_EQ(a.counts.total(), b.counts.total());

@@ -40,26 +40,32 @@ Setting load_setting(const std::string& path) {
   for (int k = 0; k < 7; ++k) {
     const auto begin = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(direct::cost(s.recordings, s.nominal));
-    s.direct_seconds = std::min(s.direct_seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    s.direct_seconds = std::min(
+        s.direct_seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   return s;
 }
 
 void register_all(const Setting& s) {
   const auto add = [&s](const std::string& name, double candidates, auto body) {
-    benchmark::RegisterBenchmark(name.c_str(), [&s, candidates, body](benchmark::State& state) {
-      double total = 0;
-      for (auto _ : state) {
-        const auto begin = std::chrono::steady_clock::now();
-        body();
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        state.SetIterationTime(seconds);
-        total += seconds;
-      }
-      const double each = total / static_cast<double>(state.iterations()) / candidates;
-      state.counters["ns_per_sample"] = 1e9 * each / s.samples;
-      state.counters["x_direct"] = s.direct_seconds / each;
-    })->Unit(benchmark::kMillisecond)->UseManualTime();
+    benchmark::RegisterBenchmark(
+        name.c_str(),
+        [&s, candidates, body](benchmark::State& state) {
+          double total = 0;
+          for (auto _ : state) {
+            const auto begin = std::chrono::steady_clock::now();
+            body();
+            const double seconds =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+            state.SetIterationTime(seconds);
+            total += seconds;
+          }
+          const double each = total / static_cast<double>(state.iterations()) / candidates;
+          state.counters["ns_per_sample"] = 1e9 * each / s.samples;
+          state.counters["x_direct"] = s.direct_seconds / each;
+        })
+        ->Unit(benchmark::kMillisecond)
+        ->UseManualTime();
   };
   add("direct_cost", 1, [&s] { benchmark::DoNotOptimize(direct::cost(s.recordings, s.nominal)); });
   const auto problem = std::make_shared<const CalibrationProblem>(s.parameters, s.recordings);
@@ -85,7 +91,8 @@ void register_all(const Setting& s) {
   });
   for (const kernel::Kernel& k : kernel::available()) {
     const auto structure = std::make_shared<const CalibrationStructure>(s.recordings, s.nominal, k);
-    add(std::string("kernel/") + k.name + "/cost", 1, [&s, structure] { benchmark::DoNotOptimize(structure->cost(s.nominal)); });
+    add(std::string("kernel/") + k.name + "/cost", 1,
+        [&s, structure] { benchmark::DoNotOptimize(structure->cost(s.nominal)); });
     add(std::string("kernel/") + k.name + "/normal_equations", 1, [&s, structure] {
       NormalEquations e;
       structure->normal_equations(s.nominal, e);
@@ -114,8 +121,8 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
     const odobench::Setting setting = odobench::load_setting(data);
-    std::printf("%s: %zu recordings, %.0f samples, direct form %.3f ms\n", data.c_str(), setting.recordings.size(),
-                setting.samples, 1e3 * setting.direct_seconds);
+    std::printf("%s: %zu recordings, %.0f samples, direct form %.3f ms\n", data.c_str(),
+                setting.recordings.size(), setting.samples, 1e3 * setting.direct_seconds);
     odobench::register_all(setting);
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {

@@ -23,22 +23,25 @@ Vector nominal_values(const std::vector<ParameterInfo>& parameters) {
 
 void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recording>& recordings) {
   if (parameters.size() != static_cast<std::size_t>(kCalibrationParameters))
-    throw std::invalid_argument(
-        fmt::format("calibration: {} parameters, expected the 12 of a1..a4, b1..b4, r1..r4", parameters.size()));
+    throw std::invalid_argument(fmt::format(
+        "calibration: {} parameters, expected the 12 of a1..a4, b1..b4, r1..r4", parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const std::string expected = fmt::format("{}{}", "abr"[i / 4], i % 4 + 1);
     if (parameters[i].name != expected)
-      throw std::invalid_argument(
-          fmt::format("calibration: parameter {} is '{}', expected '{}'", i + 1, parameters[i].name, expected));
+      throw std::invalid_argument(fmt::format("calibration: parameter {} is '{}', expected '{}'", i + 1,
+                                              parameters[i].name, expected));
   }
   validate(parameters);
   for (std::size_t i = 0; i < 4; ++i)
-    if (parameters[i].lower <= 0 && parameters[i].upper >= 0 && parameters[i + 4].lower <= 0 && parameters[i + 4].upper >= 0)
-      throw std::invalid_argument(fmt::format("calibration: the box lets wheel {} stand at the origin (a = b = 0)", i + 1));
+    if (parameters[i].lower <= 0 && parameters[i].upper >= 0 && parameters[i + 4].lower <= 0 &&
+        parameters[i + 4].upper >= 0)
+      throw std::invalid_argument(
+          fmt::format("calibration: the box lets wheel {} stand at the origin (a = b = 0)", i + 1));
   if (recordings.empty()) throw std::invalid_argument("calibration: no recordings, expected at least one");
   for (const Recording& r : recordings)
     if (r.size() < 2)
-      throw std::invalid_argument(fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
+      throw std::invalid_argument(
+          fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
 }
 
 Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::size_t k) {
@@ -47,17 +50,21 @@ Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::
 
 }  // namespace
 
-CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings)
+CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
+                                       std::vector<Recording> recordings)
     : parameters_(std::move(parameters)), recordings_(std::move(recordings)) {
   check(parameters_, recordings_);
-  structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel::available().front());
+  structure_ =
+      std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel::available().front());
 }
 
 CalibrationProblem::~CalibrationProblem() = default;
 CalibrationProblem::CalibrationProblem(CalibrationProblem&&) noexcept = default;
 CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept = default;
 
-double CalibrationProblem::cost(const ConstVectorRef& z) const { return structure_->cost(z); }
+double CalibrationProblem::cost(const ConstVectorRef& z) const {
+  return structure_->cost(z);
+}
 
 void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
   structure_->batch_cost(candidates, costs);
@@ -101,7 +108,8 @@ void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorR
       for (std::size_t i = 0; i < kWheelCount; ++i) {
         const auto w = static_cast<Eigen::Index>(i);
         const double turn = 0.25 * dt * recording.wheel_speed[i][k];
-        const double c = turn * std::cos(recording.steering[i][k]), s = turn * std::sin(recording.steering[i][k]);
+        const double c = turn * std::cos(recording.steering[i][k]),
+                     s = turn * std::sin(recording.steering[i][k]);
         gx[w] += cos_theta * c - sin_theta * s;
         gy[w] += sin_theta * c + cos_theta * s;
         gt[4 + w] -= c;

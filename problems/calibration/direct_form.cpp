@@ -35,7 +35,8 @@ double cost(std::span<const Recording> recordings, const ConstVectorRef& z) {
   for (const Recording& recording : recordings) {
     const PoseTrack q = integrate(recording, z);
     for (std::size_t k = 1; k < recording.size(); ++k) {
-      const double ex = q.x[k] - recording.x[k], ey = q.y[k] - recording.y[k], et = q.theta[k] - recording.theta[k];
+      const double ex = q.x[k] - recording.x[k], ey = q.y[k] - recording.y[k],
+                   et = q.theta[k] - recording.theta[k];
       sum += ex * ex + ey * ey + et * et;
     }
   }

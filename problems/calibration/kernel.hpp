@@ -16,7 +16,7 @@ namespace odobench::kernel {
 
 inline constexpr int kStreams = 10;
 inline constexpr int kLinear = 12;
-inline constexpr int kHeading = 8;                          // P_1..P_4, Q_1..Q_4
+inline constexpr int kHeading = 8;                             // P_1..P_4, Q_1..Q_4
 inline constexpr int kTriangle = kLinear * (kLinear + 1) / 2;  // lower triangle, row by row
 inline constexpr int kMaxWidth = 8;
 // Largest |dtheta| of a step for which the rotation polynomial is exact to 1e-15; beyond it the `exact` form is used.
@@ -37,11 +37,11 @@ struct CostSums {
 
 struct NormalSums {
   CostSums cost;
-  double heading0[kHeading][kMaxWidth];  // in: dtheta/d(P, Q) at the segment's start
-  double gx[kLinear][kMaxWidth], gy[kLinear][kMaxWidth];          // derivative of the displacement over the segment
+  double heading0[kHeading][kMaxWidth];                   // in: dtheta/d(P, Q) at the segment's start
+  double gx[kLinear][kMaxWidth], gy[kLinear][kMaxWidth];  // derivative of the displacement over the segment
   double sum_gx[kLinear][kMaxWidth], sum_gy[kLinear][kMaxWidth];  // sums over the samples
-  double jtr[kLinear][kMaxWidth];                                // sum of gx ex + gy ey
-  double jtj[kTriangle][kMaxWidth];                              // sum of gx gx' + gy gy'
+  double jtr[kLinear][kMaxWidth];                                 // sum of gx ex + gy ey
+  double jtj[kTriangle][kMaxWidth];                               // sum of gx gx' + gy gy'
 };
 
 struct Kernel {

@@ -4,7 +4,9 @@
 
 namespace odobench::kernel {
 
-Kernel avx2() { return make_kernel<4>("avx2"); }
+Kernel avx2() {
+  return make_kernel<4>("avx2");
+}
 
 }  // namespace odobench::kernel
 #endif

@@ -4,7 +4,9 @@
 
 namespace odobench::kernel {
 
-Kernel avx512() { return make_kernel<8>("avx512"); }
+Kernel avx512() {
+  return make_kernel<8>("avx512");
+}
 
 }  // namespace odobench::kernel
 #endif

@@ -3,7 +3,9 @@
 
 namespace odobench::kernel {
 
-Kernel baseline() { return make_kernel<2>("baseline"); }
+Kernel baseline() {
+  return make_kernel<2>("baseline");
+}
 
 std::span<const Kernel> available() {
   struct List {
@@ -13,7 +15,8 @@ std::span<const Kernel> available() {
   static const List list = [] {
     List l{};
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
       l.kernels[l.count++] = avx512();
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) l.kernels[l.count++] = avx2();
 #endif

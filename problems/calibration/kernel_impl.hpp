@@ -94,7 +94,8 @@ void run_cost(const Block& block, const double* s, CostSums& sums) {
   const double* row = block.data;
   for (long k = 0; k < block.steps; ++k, row += kStreams * W) {
     const V c0 = load<W>(row), c1 = load<W>(row + W), c2 = load<W>(row + 2 * W), c3 = load<W>(row + 3 * W);
-    const V s0 = load<W>(row + 4 * W), s1 = load<W>(row + 5 * W), s2 = load<W>(row + 6 * W), s3 = load<W>(row + 7 * W);
+    const V s0 = load<W>(row + 4 * W), s1 = load<W>(row + 5 * W), s2 = load<W>(row + 6 * W),
+            s3 = load<W>(row + 7 * W);
     const V ux = (z.r[0] * c0 + z.r[1] * c1) + (z.r[2] * c2 + z.r[3] * c3);
     const V uy = (z.r[0] * s0 + z.r[1] * s1) + (z.r[2] * s2 + z.r[3] * s3);
     const V turn = ((z.q[0] * s0 + z.q[1] * s1) + (z.q[2] * s2 + z.q[3] * s3)) -

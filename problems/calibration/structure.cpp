@@ -64,8 +64,8 @@ LinearMatrix linear_jacobian(const ConstVectorRef& z) {
   return j;
 }
 
-CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordings, const ConstVectorRef& nominal,
-                                           const kernel::Kernel& kernel)
+CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordings,
+                                           const ConstVectorRef& nominal, const kernel::Kernel& kernel)
     : kernel_(kernel) {
   heading_.origin = linear_parameters(nominal).tail<kHeading>();
   heading_.a.setZero();
@@ -141,7 +141,8 @@ double CalibrationStructure::heading_cost(const LinearVector& s) const {
   return d.dot(heading_.a * d) + 2.0 * heading_.b.dot(d) + heading_.c;
 }
 
-double CalibrationStructure::recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const {
+double CalibrationStructure::recording_cost(const RecordingPlan& plan, const LinearVector& s,
+                                            bool exact) const {
   double x = 0, y = 0, cost = 0;
   kernel::CostSums sums;
   for (const BlockPlan& block : plan.blocks) {
@@ -151,7 +152,8 @@ double CalibrationStructure::recording_cost(const RecordingPlan& plan, const Lin
       sums.cos0[lane] = std::cos(theta);
       sums.sin0[lane] = std::sin(theta);
     }
-    (block.width == 1 ? kernel_.cost_tail : kernel_.cost)({&data_[block.data], block.steps}, s.data(), exact, sums);
+    (block.width == 1 ? kernel_.cost_tail : kernel_.cost)({&data_[block.data], block.steps}, s.data(), exact,
+                                                          sums);
     for (int lane = 0; lane < block.width; ++lane) {
       const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
       // The error at the segment's start is added to every sample of it: sum (e + e0)^2 = sum e^2 + 2 e0 sum e + n e0^2.
@@ -188,8 +190,8 @@ void CalibrationStructure::batch_cost(const ConstMatrixRef& candidates, VectorRe
       costs[static_cast<Eigen::Index>(k)] += recording_cost(plan, s[k], exact[k] != 0);
 }
 
-void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost,
-                                      LinearVector& jtr, LinearMatrix& jtj) const {
+void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact,
+                                      double& cost, LinearVector& jtr, LinearMatrix& jtj) const {
   double x = 0, y = 0;
   LinearVector gx0 = LinearVector::Zero(), gy0 = LinearVector::Zero();  // derivative of the position so far
   kernel::NormalSums sums;
@@ -201,7 +203,8 @@ void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVec
       sums.cost.sin0[lane] = std::sin(theta);
       for (int j = 0; j < kHeading; ++j) sums.heading0[j][lane] = segment.heading0[j];
     }
-    (block.width == 1 ? kernel_.normal_tail : kernel_.normal)({&data_[block.data], block.steps}, s.data(), exact, sums);
+    (block.width == 1 ? kernel_.normal_tail : kernel_.normal)({&data_[block.data], block.steps}, s.data(),
+                                                              exact, sums);
     for (int lane = 0; lane < block.width; ++lane) {
       const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
       const auto n = static_cast<double>(segment.steps);
@@ -219,7 +222,8 @@ void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVec
       }
       cost += sums.cost.squares[lane] + 2 * (ex0 * ex + ey0 * ey) + n * (ex0 * ex0 + ey0 * ey0);
       jtr += sx * ex0 + sy * ey0 + gx0 * (ex + n * ex0) + gy0 * (ey + n * ey0);
-      const LinearMatrix cross = (sx + 0.5 * n * gx0) * gx0.transpose() + (sy + 0.5 * n * gy0) * gy0.transpose();
+      const LinearMatrix cross =
+          (sx + 0.5 * n * gx0) * gx0.transpose() + (sy + 0.5 * n * gy0) * gy0.transpose();
       jtj.triangularView<Eigen::Lower>() += cross + cross.transpose();
       x += sums.cost.x[lane];
       y += sums.cost.y[lane];

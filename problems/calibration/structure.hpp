@@ -29,7 +29,7 @@ struct HeadingForm {
 // Segments of a recording in time order; `width` of them form a block. The last few increments form one of width 1.
 struct Segment {
   long steps = 0;
-  HeadingVector heading0;        // dtheta/dh at its start: prefix sums of (-C, S)
+  HeadingVector heading0;       // dtheta/dh at its start: prefix sums of (-C, S)
   double x_ref = 0, y_ref = 0;  // reference position at its start
 };
 struct BlockPlan {
@@ -46,7 +46,8 @@ struct RecordingPlan {
 
 class CalibrationStructure {
  public:
-  CalibrationStructure(const std::vector<Recording>& recordings, const ConstVectorRef& nominal, const kernel::Kernel& kernel);
+  CalibrationStructure(const std::vector<Recording>& recordings, const ConstVectorRef& nominal,
+                       const kernel::Kernel& kernel);
 
   double cost(const ConstVectorRef& z) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
@@ -57,8 +58,8 @@ class CalibrationStructure {
   bool needs_exact_rotation(const LinearVector& s) const;
   double heading_cost(const LinearVector& s) const;
   double recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const;
-  void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost, LinearVector& jtr,
-                  LinearMatrix& jtj) const;
+  void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost,
+                  LinearVector& jtr, LinearMatrix& jtj) const;
   void plan_recording(const Recording& recording, const Increments& list);
   void add_heading(const Recording& recording, const Increments& list);
 

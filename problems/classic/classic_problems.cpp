@@ -121,19 +121,24 @@ struct Step : WithOptimum {
 }  // namespace
 
 const std::vector<std::string>& classic_problem_names() {
-  static const std::vector<std::string> names{"sphere", "ellipsoid", "corner", "rosenbrock", "powell", "rastrigin", "step"};
+  static const std::vector<std::string> names{"sphere", "ellipsoid", "corner", "rosenbrock",
+                                              "powell", "rastrigin", "step"};
   return names;
 }
 
 Problem make_classic_problem(const std::string& name, int n) {
   if (n < 2 || (name == "powell" && n != 4))
-    throw std::invalid_argument(fmt::format("problem '{}': dimension {}; expected {}", name, n, name == "powell" ? "4" : ">= 2"));
+    throw std::invalid_argument(
+        fmt::format("problem '{}': dimension {}; expected {}", name, n, name == "powell" ? "4" : ">= 2"));
   if (name == "sphere")
-    return Problem(LinearResiduals<WithOptimum>{{{name, box(n, -0.5, -1, 1)}}, Matrix::Identity(n, n), Vector::Constant(n, 1.0 / 3)});
+    return Problem(LinearResiduals<WithOptimum>{
+        {{name, box(n, -0.5, -1, 1)}}, Matrix::Identity(n, n), Vector::Constant(n, 1.0 / 3)});
   if (name == "ellipsoid")
-    return Problem(LinearResiduals<WithOptimum>{{{name, box(n, -0.5, -1, 1)}}, ellipsoid_matrix(n), Vector::LinSpaced(n, -0.4, 0.6)});
+    return Problem(LinearResiduals<WithOptimum>{
+        {{name, box(n, -0.5, -1, 1)}}, ellipsoid_matrix(n), Vector::LinSpaced(n, -0.4, 0.6)});
   if (name == "corner")
-    return Problem(LinearResiduals<Base>{{name, box(n, 0.0, -1, 1)}, ellipsoid_matrix(n), Vector::LinSpaced(n, -3.0, 2.0)});
+    return Problem(LinearResiduals<Base>{
+        {name, box(n, 0.0, -1, 1)}, ellipsoid_matrix(n), Vector::LinSpaced(n, -3.0, 2.0)});
   if (name == "rosenbrock") return Problem(Rosenbrock{{{name, box(n, -1.2, -2, 2)}}});
   if (name == "powell") return Problem(Powell{{{name, box(n, 1.0, -4, 5)}}});
   if (name == "rastrigin") return Problem(Rastrigin{{{name, box(n, 2.2, -5.12, 4.12)}}});

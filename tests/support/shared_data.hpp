@@ -14,10 +14,13 @@ inline std::filesystem::path shared_folder() {
   if (const char* folder = std::getenv("ODOBENCH_SHARED")) return folder;
   return std::filesystem::path(ODOBENCH_SOURCE_DIR).parent_path() / "shared";
 }
-inline bool has_shared() { return std::filesystem::exists(shared_folder() / "reference"); }
+inline bool has_shared() {
+  return std::filesystem::exists(shared_folder() / "reference");
+}
 
 }  // namespace odobench::testing
 
 // First line of every test that needs them: the test is reported as skipped, by name, when they are absent.
-#define ODOBENCH_NEEDS_SHARED() \
-  if (!odobench::testing::has_shared()) GTEST_SKIP() << "needs " << odobench::testing::shared_folder() << " (set ODOBENCH_SHARED)"
+#define ODOBENCH_NEEDS_SHARED()         \
+  if (!odobench::testing::has_shared()) \
+  GTEST_SKIP() << "needs " << odobench::testing::shared_folder() << " (set ODOBENCH_SHARED)"

@@ -16,7 +16,8 @@ inline std::vector<ParameterInfo> nominal_robot() {
     for (int i = 0; i < 4; ++i) {
       const double nominal = sign[kind][i] * (kind == 2 ? 0.0254 : 0.1125);
       const double p = nominal * 0.95, q = nominal * 1.05;
-      list.push_back({std::string(1, "abr"[kind]) + std::to_string(i + 1), "m", nominal, std::min(p, q), std::max(p, q)});
+      list.push_back({std::string(1, "abr"[kind]) + std::to_string(i + 1), "m", nominal, std::min(p, q),
+                      std::max(p, q)});
     }
   return list;
 }

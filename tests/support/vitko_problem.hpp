@@ -17,7 +17,8 @@ inline const Dataset& vitko_dataset() {
 
 inline std::vector<ParameterInfo> parameters_of(const Dataset& set) {
   std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : set.robot.parameters) list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
+  for (const RobotParameter& p : set.robot.parameters)
+    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
   return list;
 }
 
