@@ -13,7 +13,7 @@
 #include "solvers/optimality.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
-#include "support/shared_data.hpp"
+#include "tests/support/shared_data.hpp"
 
 namespace odobench {
 namespace {
