@@ -4,9 +4,10 @@
 //     u(y) = y                                  |y| <= 1 - a
 //     u(y) = 1 - (1 + a - y)^2 / (4 a)          1 - a < y <= 1 + a      (u' continuous, u'(1 + a) = 0)
 //     u(y) = u(2 (1 + a) - y)                   beyond: the line is folded back
-// (the idea is Hansen's, the boundary handler of the C code of CMA-ES, 2010). A linear slope of the cost towards a
-// bound becomes a parabola with its minimum at y = 1 + a: an active bound looks to the method like any other smooth
-// minimum, every sample is feasible, nothing is clamped, and an error dy costs only dy^2 / (4 a).
+// (the idea is Hansen's, the boundary handler of the C code of CMA-ES, 2010). A linear slope of the cost
+// towards a bound becomes a parabola with its minimum at y = 1 + a: an active bound looks to the method like
+// any other smooth minimum, every sample is feasible, nothing is clamped, and an error dy costs only
+// dy^2 / (4 a).
 #pragma once
 
 #include "problems/problem.hpp"

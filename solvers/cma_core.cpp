@@ -11,7 +11,12 @@
 namespace odobench {
 
 CmaDescent::CmaDescent(const Vector& mean, double sigma, int population, bool active)
-    : m_(mean.size()), population_(population), active_(active), sigma_(sigma), first_sigma_(sigma), mean_(mean) {
+    : m_(mean.size()),
+      population_(population),
+      active_(active),
+      sigma_(sigma),
+      first_sigma_(sigma),
+      mean_(mean) {
   p_sigma_ = p_c_ = Vector::Zero(m_);
   c_ = b_ = Matrix::Identity(m_, m_);
   d_ = Vector::Ones(m_);
@@ -27,11 +32,12 @@ void CmaDescent::set_rates() {
     raw[i] = std::log(0.5 * static_cast<double>(lambda + 1)) - std::log(static_cast<double>(i + 1));
   const auto effective = [](const auto& w) { return w.sum() * w.sum() / w.squaredNorm(); };
   mu_eff_ = effective(raw.head(parents_));
-  c_sigma_ = (mu_eff_ + 2.0) / (n + mu_eff_ + 5.0);                                                     // (55)
+  c_sigma_ = (mu_eff_ + 2.0) / (n + mu_eff_ + 5.0);  // (55)
   d_sigma_ = 1.0 + 2.0 * std::max(0.0, std::sqrt((mu_eff_ - 1.0) / (n + 1.0)) - 1.0) + c_sigma_;
-  c_c_ = (4.0 + mu_eff_ / n) / (n + 4.0 + 2.0 * mu_eff_ / n);                                           // (56)
-  c_1_ = 2.0 / ((n + 1.3) * (n + 1.3) + mu_eff_);                                                       // (57)
-  c_mu_ = std::min(1.0 - c_1_, 2.0 * (0.25 + mu_eff_ - 2.0 + 1.0 / mu_eff_) / ((n + 2.0) * (n + 2.0) + mu_eff_));  // (58)
+  c_c_ = (4.0 + mu_eff_ / n) / (n + 4.0 + 2.0 * mu_eff_ / n);  // (56)
+  c_1_ = 2.0 / ((n + 1.3) * (n + 1.3) + mu_eff_);              // (57)
+  c_mu_ = std::min(1.0 - c_1_,
+                   2.0 * (0.25 + mu_eff_ - 2.0 + 1.0 / mu_eff_) / ((n + 2.0) * (n + 2.0) + mu_eff_));  // (58)
   chi_ = std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 
   weights_ = Vector::Zero(lambda);  // (50)-(53)
@@ -40,13 +46,15 @@ void CmaDescent::set_rates() {
   const double worse_sum = worse.cwiseMin(0.0).cwiseAbs().sum();
   if (!active_ || worse_sum <= 0 || c_mu_ <= 0) return;
   const double mu_eff_worse = effective(worse);
-  const double limit = std::min({1.0 + c_1_ / c_mu_, 1.0 + 2.0 * mu_eff_worse / (mu_eff_ + 2.0),
-                                 (1.0 - c_1_ - c_mu_) / (n * c_mu_)});
+  const double limit = std::min(
+      {1.0 + c_1_ / c_mu_, 1.0 + 2.0 * mu_eff_worse / (mu_eff_ + 2.0), (1.0 - c_1_ - c_mu_) / (n * c_mu_)});
   weights_.tail(lambda - parents_) = worse.cwiseMin(0.0) * (limit / worse_sum);
 }
 
 Matrix CmaDescent::sample(Random& random) {
-  if (generation_ == 0 || (generation_ - decomposed_at_) * 10.0 * static_cast<double>(m_) * (c_1_ + c_mu_) >= 1.0) decompose();
+  if (generation_ == 0 ||
+      (generation_ - decomposed_at_) * 10.0 * static_cast<double>(m_) * (c_1_ + c_mu_) >= 1.0)
+    decompose();
   y_.resize(m_, population_);
   for (Eigen::Index k = 0; k < y_.cols(); ++k)
     for (Eigen::Index i = 0; i < m_; ++i) y_(i, k) = random.normal();
@@ -60,7 +68,8 @@ void CmaDescent::decompose() {
   if (!c_.allFinite()) return;
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(c_);
   b_ = eigen.eigenvectors();
-  // The rounding error of an eigenvalue is relative to the largest one; beyond that an axis carries no information.
+  // The rounding error of an eigenvalue is relative to the largest one; beyond that an axis carries no
+  // information.
   const double floor = 1e-16 * eigen.eigenvalues().maxCoeff();
   d_ = eigen.eigenvalues().cwiseMax(floor).cwiseSqrt();
 }
@@ -68,7 +77,8 @@ void CmaDescent::decompose() {
 void CmaDescent::update(const Vector& costs) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(population_));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return costs[a] < costs[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return costs[a] < costs[b]; });
   ++generation_;
 
   Vector step = Vector::Zero(m_);
@@ -76,7 +86,8 @@ void CmaDescent::update(const Vector& costs) {
   mean_ += sigma_ * step;
 
   const auto whitened = [this](const Vector& y) { return Vector((b_.transpose() * y).cwiseQuotient(d_)); };
-  p_sigma_ = (1.0 - c_sigma_) * p_sigma_ + std::sqrt(c_sigma_ * (2.0 - c_sigma_) * mu_eff_) * (b_ * whitened(step));
+  p_sigma_ =
+      (1.0 - c_sigma_) * p_sigma_ + std::sqrt(c_sigma_ * (2.0 - c_sigma_) * mu_eff_) * (b_ * whitened(step));
   const double length = p_sigma_.norm();
   const double unbiased = std::sqrt(1.0 - std::pow(1.0 - c_sigma_, 2.0 * generation_));
   const bool h = length / unbiased < (1.4 + 2.0 / (static_cast<double>(m_) + 1.0)) * chi_;
@@ -102,7 +113,8 @@ void CmaDescent::update(const Vector& costs) {
 
 void CmaDescent::remember(const Vector& sorted) {
   // Equal flanks mean that the step is too small to tell candidates apart: widen it (Hansen, appendix B.2).
-  if (sorted[0] == sorted[std::min<Eigen::Index>(population_ - 1, population_ / 4)] && std::isfinite(sorted[0]))
+  if (sorted[0] == sorted[std::min<Eigen::Index>(population_ - 1, population_ / 4)] &&
+      std::isfinite(sorted[0]))
     sigma_ *= std::exp(0.2 + c_sigma_ / d_sigma_);
   newest_range_ = sorted[population_ - 1] - sorted[0];
   bests_.push_back(sorted[0]);
@@ -114,11 +126,14 @@ void CmaDescent::remember(const Vector& sorted) {
   }
 }
 
-double CmaDescent::axis_ratio() const { return d_.maxCoeff() / d_.minCoeff(); }
+double CmaDescent::axis_ratio() const {
+  return d_.maxCoeff() / d_.minCoeff();
+}
 
 bool CmaDescent::stagnated() const {
   const auto length = std::min<std::size_t>(
-      20000, static_cast<std::size_t>(std::max(120.0 + 30.0 * static_cast<double>(m_) / population_, 0.2 * generation_)));
+      20000, static_cast<std::size_t>(
+                 std::max(120.0 + 30.0 * static_cast<double>(m_) / population_, 0.2 * generation_)));
   if (bests_.size() < length) return false;
   const auto median = [](const std::deque<double>& values, std::size_t first, std::size_t count) {
     std::vector<double> part(values.begin() + static_cast<std::ptrdiff_t>(first),
@@ -144,8 +159,10 @@ bool CmaDescent::step_without_effect() const {
 
 std::string CmaDescent::finished(double cost_tolerance, double step_tolerance) const {
   if (generation_ == 0) return {};
-  if (!c_.allFinite() || !mean_.allFinite() || !std::isfinite(sigma_)) return "the covariance is no longer finite";
-  const auto window = static_cast<std::size_t>(10.0 + std::ceil(30.0 * static_cast<double>(m_) / population_));
+  if (!c_.allFinite() || !mean_.allFinite() || !std::isfinite(sigma_))
+    return "the covariance is no longer finite";
+  const auto window =
+      static_cast<std::size_t>(10.0 + std::ceil(30.0 * static_cast<double>(m_) / population_));
   if (bests_.size() >= window) {
     const auto first = bests_.end() - static_cast<std::ptrdiff_t>(window);
     const auto [low, high] = std::minmax_element(first, bests_.end());
@@ -155,10 +172,12 @@ std::string CmaDescent::finished(double cost_tolerance, double step_tolerance) c
   }
   const double largest = sigma_ * std::max(p_c_.cwiseAbs().maxCoeff(), std::sqrt(c_.diagonal().maxCoeff()));
   if (largest <= step_tolerance * first_sigma_)
-    return fmt::format("standard deviation {:.2g} <= {:.2g} times the first", largest / first_sigma_, step_tolerance);
+    return fmt::format("standard deviation {:.2g} <= {:.2g} times the first", largest / first_sigma_,
+                       step_tolerance);
   if (axis_ratio() > 1e7) return fmt::format("axis ratio {:.2g} > 1e7", axis_ratio());
   if (step_without_effect()) return "a step of 0.1 standard deviations no longer changes the mean";
-  if (stagnated()) return fmt::format("no better median in {} generations", bests_.size() < 20000 ? generation_ : 20000);
+  if (stagnated())
+    return fmt::format("no better median in {} generations", bests_.size() < 20000 ? generation_ : 20000);
   return {};
 }
 

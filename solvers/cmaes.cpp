@@ -61,7 +61,8 @@ DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOption
   return result;
 }
 
-// Two descents that ended in the same place, judged by the costs and, coarsely because a valley may be flat, the points.
+// Two descents that ended in the same place, judged by the costs and, coarsely because a valley may be flat,
+// the points.
 bool same_minimum(const DescentResult& a, const DescentResult& b) {
   if (!std::isfinite(a.best) || !std::isfinite(b.best)) return false;
   const double scale = std::max({std::abs(a.best), std::abs(b.best), b.first_median - b.best});
@@ -72,7 +73,8 @@ bool same_minimum(const DescentResult& a, const DescentResult& b) {
 class Restarts {
  public:
   Restarts(const CmaesOptions& options, Eigen::Index m) : options_(options), m_(m) {
-    base_ = options.population > 0 ? options.population : 4 + static_cast<int>(5.0 * std::log(static_cast<double>(m)));
+    base_ = options.population > 0 ? options.population
+                                   : 4 + static_cast<int>(5.0 * std::log(static_cast<double>(m)));
     large_ = base_;
   }
   DescentSetting first(const Vector& start) const { return limited({start, options_.sigma, base_, 0}); }
@@ -95,7 +97,9 @@ class Restarts {
     }
     return limited(setting);
   }
-  bool small_is_next() const { return options_.strategy == "bipop" && doubled_ > 0 && spent_small_ < spent_large_; }
+  bool small_is_next() const {
+    return options_.strategy == "bipop" && doubled_ > 0 && spent_small_ < spent_large_;
+  }
   int count() const { return count_; }
   int large() const { return doubled_; }
   void spent(std::int64_t evaluations) { (small_ ? spent_small_ : spent_large_) += evaluations; }
@@ -103,8 +107,10 @@ class Restarts {
  private:
   DescentSetting limited(DescentSetting s) const {
     const double m3 = static_cast<double>(m_) + 3.0;
-    s.generations = options_.generations > 0 ? options_.generations
-                                             : 100 + static_cast<int>(50.0 * m3 * m3 / std::sqrt(static_cast<double>(s.population)));
+    s.generations =
+        options_.generations > 0
+            ? options_.generations
+            : 100 + static_cast<int>(50.0 * m3 * m3 / std::sqrt(static_cast<double>(s.population)));
     return s;
   }
   const CmaesOptions& options_;
@@ -118,43 +124,58 @@ class Restarts {
 }  // namespace
 
 void CmaesOptions::bind(OptionBinder& binder) {
-  binder.integer("population", population, "samples per generation of the first descent, 0: 4 + 5 ln(parameters)", 0, 1 << 20);
+  binder.integer("population", population,
+                 "samples per generation of the first descent, 0: 4 + 5 ln(parameters)", 0, 1 << 20);
   binder.number("sigma", sigma, "first standard deviation, half-widths of the box", 1e-12, 10);
   binder.flag("active", active, "negative weights for the worse half of the samples");
   binder.choice("strategy", strategy, "how restarts choose their population", {"ipop", "bipop"});
-  binder.integer("restarts", restarts, "most restarts with a doubled population; ends earlier when a restart finds the best point again", 0);
-  binder.integer("generations", generations, "limit per descent, 0: 100 + 50 (parameters + 3)^2 / sqrt(population)", 0);
-  binder.number("cost_tolerance", cost_tolerance, "a descent ends when recent costs differ by at most this times the cost", 0, 1);
-  binder.number("step_tolerance", step_tolerance, "a descent ends when all deviations are below this times the first", 0, 1);
-  binder.number("boundary", boundary, "width of the zone next to a bound in which the coordinates are bent", 1e-6, 1);
+  binder.integer(
+      "restarts", restarts,
+      "most restarts with a doubled population; ends earlier when a restart finds the best point again", 0);
+  binder.integer("generations", generations,
+                 "limit per descent, 0: 100 + 50 (parameters + 3)^2 / sqrt(population)", 0);
+  binder.number("cost_tolerance", cost_tolerance,
+                "a descent ends when recent costs differ by at most this times the cost", 0, 1);
+  binder.number("step_tolerance", step_tolerance,
+                "a descent ends when all deviations are below this times the first", 0, 1);
+  binder.number("boundary", boundary, "width of the zone next to a bound in which the coordinates are bent",
+                1e-6, 1);
 }
 
 void CmaesOptions::validate() const {
   if (population == 1) throw std::invalid_argument("solver 'cmaes': option population=1; expected 0 or >= 2");
 }
 
-std::string Cmaes::why_not(const Problem&) const { return {}; }
+std::string Cmaes::why_not(const Problem&) const {
+  return {};
+}
 
 Outcome Cmaes::minimise(Run& run) const {
   Restarts restarts(options_, run.dimension());
   DescentResult best = descend(run, restarts.first(run.start()), options_);
   if (run.stop()) return {};
   restarts.spent(best.evaluations);
-  if (options_.restarts == 0) return {best.converged ? Termination::Converged : Termination::IterationLimit, best.message};
+  if (options_.restarts == 0)
+    return {best.converged ? Termination::Converged : Termination::IterationLimit, best.message};
   for (;;) {
     const DescentResult result = descend(run, restarts.next(run.random()), options_);
     if (run.stop()) return {};
     restarts.spent(result.evaluations);
     const bool again = same_minimum(best, result);
     if (result.best < best.best) best = result;
-    if (again) return {Termination::Converged, fmt::format("restart {} ended at the best point again; {}", restarts.count(), result.message)};
+    if (again)
+      return {Termination::Converged,
+              fmt::format("restart {} ended at the best point again; {}", restarts.count(), result.message)};
     if (restarts.large() >= options_.restarts && !restarts.small_is_next())
-      return {Termination::IterationLimit, fmt::format("{} restarts with a doubled population >= limit {}; {}", restarts.large(), options_.restarts, best.message)};
+      return {Termination::IterationLimit,
+              fmt::format("{} restarts with a doubled population >= limit {}; {}", restarts.large(),
+                          options_.restarts, best.message)};
   }
 }
 
 SolverEntry cmaes_entry() {
-  return make_entry<Cmaes, CmaesOptions>("cmaes", "CMA-ES with bounds by a smooth map and restarts with growing populations", true);
+  return make_entry<Cmaes, CmaesOptions>(
+      "cmaes", "CMA-ES with bounds by a smooth map and restarts with growing populations", true);
 }
 
 }  // namespace odobench

@@ -33,8 +33,8 @@ void CoordinateSearchOptions::bind(OptionBinder& binder) {
 
 void CoordinateSearchOptions::validate() const {
   if (tolerance > step)
-    throw std::invalid_argument(
-        fmt::format("solver 'coordinate': option tolerance={} > step={}; expected tolerance <= step", tolerance, step));
+    throw std::invalid_argument(fmt::format(
+        "solver 'coordinate': option tolerance={} > step={}; expected tolerance <= step", tolerance, step));
 }
 
 Outcome CoordinateSearch::minimise(Run& run) const {
@@ -43,16 +43,19 @@ Outcome CoordinateSearch::minimise(Run& run) const {
   int moves_left = options_.moves;
   double step = options_.step;
   for (; step >= options_.tolerance; step *= 0.5) {
-    const ScanEnd end = greedy_scan(run, [step](const Vector& at) { return coordinate_neighbours(at, step); }, u, cost, moves_left);
+    const ScanEnd end = greedy_scan(
+        run, [step](const Vector& at) { return coordinate_neighbours(at, step); }, u, cost, moves_left);
     if (end == ScanEnd::RunStopped) return {};
     if (end == ScanEnd::MoveLimit)
-      return {Termination::IterationLimit, fmt::format("{} moves >= limit {}, step {:.2g}", options_.moves, options_.moves, step)};
+      return {Termination::IterationLimit,
+              fmt::format("{} moves >= limit {}, step {:.2g}", options_.moves, options_.moves, step)};
   }
   return {Termination::Stalled, fmt::format("step {:.2g} < {:.2g}", step, options_.tolerance)};
 }
 
 SolverEntry coordinate_search_entry() {
-  return make_entry<CoordinateSearch, CoordinateSearchOptions>("coordinate", "greedy coordinate search with step halving", false);
+  return make_entry<CoordinateSearch, CoordinateSearchOptions>(
+      "coordinate", "greedy coordinate search with step halving", false);
 }
 
 }  // namespace odobench

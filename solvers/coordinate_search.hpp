@@ -1,9 +1,9 @@
-// Greedy coordinate search with step halving. From u all 2 m neighbours u +- step e_i are evaluated in one batch; the
-// search moves to the best of them if it is better than u (the first one among equals, in the order +e_1, -e_1, +e_2,
-// ...), else the step is halved, until it is below `tolerance`. A neighbour beyond the box is put on the bound; one
-// that this would leave at u is not evaluated. Deterministic, needs no derivatives, survives plateaus and non-finite
-// costs, and crawls in a rotated valley: it is the baseline of the others (a compass search: Kolda, Lewis, Torczon, SIAM
-// Review 45, 2003).
+// Greedy coordinate search with step halving. From u all 2 m neighbours u +- step e_i are evaluated in one
+// batch; the search moves to the best of them if it is better than u (the first one among equals, in the
+// order +e_1, -e_1, +e_2, ...), else the step is halved, until it is below `tolerance`. A neighbour beyond
+// the box is put on the bound; one that this would leave at u is not evaluated. Deterministic, needs no
+// derivatives, survives plateaus and non-finite costs, and crawls in a rotated valley: it is the baseline of
+// the others (a compass search: Kolda, Lewis, Torczon, SIAM Review 45, 2003).
 #pragma once
 
 #include "solvers/solver.hpp"

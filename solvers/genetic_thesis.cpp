@@ -28,7 +28,8 @@ void uniform_exchange(Random& random, Vector& p, Vector& q) {
 
 void blend(Random& random, double eta, Vector& p, Vector& q) {
   const double u = random.uniform();
-  const double b = u <= 0.5 ? std::pow(2.0 * u, 1.0 / (eta + 1.0)) : std::pow(1.0 / (2.0 * (1.0 - u)), 1.0 / (eta + 1.0));
+  const double b =
+      u <= 0.5 ? std::pow(2.0 * u, 1.0 / (eta + 1.0)) : std::pow(1.0 / (2.0 * (1.0 - u)), 1.0 / (eta + 1.0));
   const Vector s = 0.5 * ((1.0 + b) * p + (1.0 - b) * q);
   q = 0.5 * ((1.0 - b) * p + (1.0 + b) * q);
   p = s;
@@ -75,7 +76,8 @@ std::vector<Eigen::Index> roulette(Random& random, const Vector& costs) {
     if (std::isfinite(cost)) sum += cost;
   for (Eigen::Index i = 0; i < n; ++i)
     if (std::isfinite(costs[i])) fitness[i] = sum != 0 ? 1.0 - costs[i] / sum : 1.0;
-  // Costs of mixed sign can leave no valid wheel (the thesis' costs are sums of squares): every member is equal then.
+  // Costs of mixed sign can leave no valid wheel (the thesis' costs are sums of squares): every member is
+  // equal then.
   if (!(fitness.minCoeff() >= 0 && fitness.sum() > 0)) fitness = Vector::Ones(n);
   std::vector<Eigen::Index> chosen;
   for (Eigen::Index k = 0; k < n; ++k) {

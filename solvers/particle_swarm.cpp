@@ -7,20 +7,30 @@
 namespace odobench {
 
 void ParticleSwarmOptions::bind(OptionBinder& binder) {
-  binder.choice("variant", variant, "modern: moves in the frame of its memory; thesis: (3.13)-(3.14); matlab: particleswarm",
+  binder.choice("variant", variant,
+                "modern: moves in the frame of its memory; thesis: (3.13)-(3.14); matlab: particleswarm",
                 {"modern", "thesis", "matlab"});
-  binder.integer("swarm", swarm, "particles, 0: modern 4 per parameter (at least 20), thesis 100, matlab min(100, 10 per parameter)",
-                 0, 1 << 20);
+  binder.integer(
+      "swarm", swarm,
+      "particles, 0: modern 4 per parameter (at least 20), thesis 100, matlab min(100, 10 per parameter)", 0,
+      1 << 20);
   binder.integer("iterations", iterations, "limit, 0: modern 20000, thesis 500, matlab 200 per parameter", 0);
-  binder.number("inertia", inertia, "W, -1: modern 0.6 at first, thesis 0.7298; matlab adapts its own in 0.1..1.1", -1, 2);
-  binder.number("c1", c1, "attraction to the personal best, -1: modern 0.8, thesis 1.49618, matlab 1.49", -1, 10);
-  binder.number("c2", c2, "attraction to the best neighbour, -1: modern 1.2, thesis 1.49618, matlab 1.49", -1, 10);
+  binder.number("inertia", inertia,
+                "W, -1: modern 0.6 at first, thesis 0.7298; matlab adapts its own in 0.1..1.1", -1, 2);
+  binder.number("c1", c1, "attraction to the personal best, -1: modern 0.8, thesis 1.49618, matlab 1.49", -1,
+                10);
+  binder.number("c2", c2, "attraction to the best neighbour, -1: modern 1.2, thesis 1.49618, matlab 1.49", -1,
+                10);
   binder.integer("informants", informants, "modern: other particles a particle hears of", 0, 1 << 20);
-  binder.number("cost_tolerance", cost_tolerance, "modern: stop when the personal bests differ by at most this times the cost", 0, 1);
-  binder.number("boundary", boundary, "modern: width of the zone next to a bound in which the coordinates are bent", 1e-6, 1);
+  binder.number("cost_tolerance", cost_tolerance,
+                "modern: stop when the personal bests differ by at most this times the cost", 0, 1);
+  binder.number("boundary", boundary,
+                "modern: width of the zone next to a bound in which the coordinates are bent", 1e-6, 1);
   binder.number("min_neighbours", min_neighbours, "matlab: smallest neighbourhood, share of the swarm", 0, 1);
   binder.integer("stall_iterations", stall_iterations, "matlab: length of the stall test", 1);
-  binder.number("function_tolerance", function_tolerance, "matlab: stop when the best changed by less than this times the cost in the stall test", 0, 1);
+  binder.number("function_tolerance", function_tolerance,
+                "matlab: stop when the best changed by less than this times the cost in the stall test", 0,
+                1);
 }
 
 void ParticleSwarmOptions::validate() const {
@@ -68,7 +78,8 @@ Outcome minimise_swarm_thesis(Run& run, const ParticleSwarmOptions& options) {
       for (Eigen::Index i = 0; i < m; ++i) {
         const double u1 = random.uniform();
         const double u2 = random.uniform();
-        s.v(i, k) = w * s.v(i, k) + c1 * u1 * (s.best(i, k) - s.x(i, k)) + c2 * u2 * (g[i] - s.x(i, k));  // (3.13)
+        s.v(i, k) =
+            w * s.v(i, k) + c1 * u1 * (s.best(i, k) - s.x(i, k)) + c2 * u2 * (g[i] - s.x(i, k));  // (3.13)
       }
     }
     s.x = (s.x + s.v).cwiseMax(-1.0).cwiseMin(1.0);  // (3.14)

@@ -1,14 +1,15 @@
-// The swarm of MATLAB's particleswarm (Global Optimization Toolbox), after its documentation page "Particle Swarm
-// Optimization Algorithm": random neighbourhoods whose size N grows while the best does not improve, and an inertia W
-// that follows a counter s of such iterations.
-//   start      x uniform in the box, v uniform in plus or minus its width, N = N_min = max(2, floor(swarm * 0.25)), W = 1.1
+// The swarm of MATLAB's particleswarm (Global Optimization Toolbox), after its documentation page "Particle
+// Swarm Optimization Algorithm": random neighbourhoods whose size N grows while the best does not improve,
+// and an inertia W that follows a counter s of such iterations.
+//   start      x uniform in the box, v uniform in plus or minus its width, W = 1.1,
+//              N = N_min = max(2, floor(swarm * 0.25))
 //   iteration  for each particle: g = best personal best among N random other particles;
-//              v <- W v + 1.49 u1 (.) (p - x) + 1.49 u2 (.) (g - x), x <- x + v; a coordinate outside the box is put on
-//              the bound and its velocity zeroed
+//              v <- W v + 1.49 u1 (.) (p - x) + 1.49 u2 (.) (g - x), x <- x + v; a coordinate outside the box
+//              is put on the bound and its velocity zeroed
 //   improved   s <- max(0, s - 1), N <- N_min, W <- 2 W if s < 2, W / 2 if s > 5, kept in [0.1, 1.1]
 //   otherwise  s <- s + 1, N <- min(N + N_min, swarm)
-//   stop       the best changed by less than 1e-6 of its size over 20 iterations, or 200 m iterations. (The toolbox
-//              divides by max(1, |J|); here by |J|, so that the unit of the cost plays no part.)
+//   stop       the best changed by less than 1e-6 of its size over 20 iterations, or 200 m iterations.
+//              (The toolbox divides by max(1, |J|); here by |J|, so that the unit of the cost plays no part.)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +66,8 @@ Outcome minimise_swarm_matlab(Run& run, const ParticleSwarmOptions& options) {
   const auto iterations = options.iterations > 0 ? options.iterations : static_cast<int>(200 * m);
   const double c1 = options.c1 >= 0 ? options.c1 : 1.49;
   const double c2 = options.c2 >= 0 ? options.c2 : 1.49;
-  const auto share = static_cast<Eigen::Index>(std::floor(static_cast<double>(size) * options.min_neighbours));
+  const auto share =
+      static_cast<Eigen::Index>(std::floor(static_cast<double>(size) * options.min_neighbours));
   Adaptation a{std::max<Eigen::Index>(2, share), size, std::max<Eigen::Index>(2, share)};
   if (options.inertia >= 0) a.w = std::clamp(options.inertia, kLowestInertia, kHighestInertia);
   Random& random = run.random();
@@ -83,7 +85,8 @@ Outcome minimise_swarm_matlab(Run& run, const ParticleSwarmOptions& options) {
       for (Eigen::Index i = 0; i < m; ++i) {
         const double u1 = random.uniform();
         const double u2 = random.uniform();
-        s.v(i, k) = a.w * s.v(i, k) + c1 * u1 * (s.best(i, k) - s.x(i, k)) + c2 * u2 * (s.best(i, g) - s.x(i, k));
+        s.v(i, k) =
+            a.w * s.v(i, k) + c1 * u1 * (s.best(i, k) - s.x(i, k)) + c2 * u2 * (s.best(i, g) - s.x(i, k));
       }
     }
     s.x += s.v;
@@ -103,8 +106,9 @@ Outcome minimise_swarm_matlab(Run& run, const ParticleSwarmOptions& options) {
     if (history.size() <= window) continue;
     const double change = history[history.size() - 1 - window] - history.back();
     if (change < options.function_tolerance * std::abs(history.back()))
-      return {Termination::Stalled, fmt::format("the best changed by {:.2g} < {:.2g} times the cost in {} iterations", change,
-                                                options.function_tolerance, options.stall_iterations)};
+      return {Termination::Stalled,
+              fmt::format("the best changed by {:.2g} < {:.2g} times the cost in {} iterations", change,
+                          options.function_tolerance, options.stall_iterations)};
   }
   return {Termination::IterationLimit, fmt::format("{} iterations >= limit {}", iterations, iterations)};
 }

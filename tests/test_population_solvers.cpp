@@ -18,8 +18,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Result run_on(const Problem& problem, const std::string& spec, std::uint64_t seed, std::int64_t evaluations = 0,
-              double target = -std::numeric_limits<double>::infinity(), const std::string& polish = "") {
+Result run_on(const Problem& problem, const std::string& spec, std::uint64_t seed,
+              std::int64_t evaluations = 0, double target = -std::numeric_limits<double>::infinity(),
+              const std::string& polish = "") {
   SolveOptions options;
   options.seed = seed;
   options.budget.max_evaluations = evaluations;
@@ -49,8 +50,8 @@ TEST(BoundaryMap, StaysInTheBoxAndReachesTheBoundsExactly) {
     const double u = map.to_box(y);
     ASSERT_LE(std::abs(u), 1.0) << y;
     ASSERT_EQ(map.to_box(-y), -u) << y;
-    ASSERT_NEAR(map.to_box(y + 4.4), u, 1e-12) << y;              // period 4 (1 + a)
-    ASSERT_NEAR(map.to_box(2.2 - y), u, 1e-12) << y;              // folded at 1 + a
+    ASSERT_NEAR(map.to_box(y + 4.4), u, 1e-12) << y;                   // period 4 (1 + a)
+    ASSERT_NEAR(map.to_box(2.2 - y), u, 1e-12) << y;                   // folded at 1 + a
     ASSERT_LE(std::abs(map.to_box(y + 1e-3) - u), 1e-3 + 1e-12) << y;  // never steeper than 1
   }
 }
@@ -82,7 +83,7 @@ TEST(Valley, TheStatedOptimumIsTheLowestCost) {
 struct Requirement {
   std::string solver;
   int evaluations;
-  double gap;    // relative to the optimum
+  double gap;  // relative to the optimum
   int of_ten;
 };
 
@@ -117,7 +118,8 @@ TEST_P(Required, OnTheRealRecordings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Population, Required,
-                         ::testing::Values(Requirement{"cmaes", 30000, 1e-6, 9}, Requirement{"ga", 50000, 1e-2, 8},
+                         ::testing::Values(Requirement{"cmaes", 30000, 1e-6, 9},
+                                           Requirement{"ga", 50000, 1e-2, 8},
                                            Requirement{"pso", 50000, 1e-2, 8}),
                          [](const auto& parameter) { return parameter.param.solver; });
 
@@ -154,7 +156,8 @@ TEST(Population, OneParameterIsEnough) {
     const std::vector<ParameterInfo>& parameters() const { return list; }
     double cost(const ConstVectorRef& x) const { return 3 + (x[0] - 1.75) * (x[0] - 1.75); }
   };
-  for (const char* solver : {"cmaes", "ga", "pso", "coordinate", "pso[variant=matlab]", "ga[variant=thesis,crossover=0]"})
+  for (const char* solver :
+       {"cmaes", "ga", "pso", "coordinate", "pso[variant=matlab]", "ga[variant=thesis,crossover=0]"})
     EXPECT_NEAR(run_on(Problem(Parabola{}), solver, 2, 20000).cost, 3.0, 1e-3) << solver;
 }
 
@@ -181,7 +184,8 @@ TEST(Cmaes, EndsWhenARestartFindsTheSamePoint) {
 TEST(Cmaes, PopulationIsHonoured) {
   const Problem sphere = make_classic_problem("sphere", 4);
   EXPECT_EQ(run_on(sphere, "cmaes[population=25,generations=7,restarts=0]", 1).counts.total(), 25 * 7);
-  EXPECT_EQ(run_on(sphere, "cmaes[population=25,generations=7,restarts=1]", 1).counts.total(), 25 * 7 + 50 * 7);
+  EXPECT_EQ(run_on(sphere, "cmaes[population=25,generations=7,restarts=1]", 1).counts.total(),
+            25 * 7 + 50 * 7);
 }
 
 // --- ga ---
@@ -193,7 +197,8 @@ TEST(GeneticThesis, SpendsTheProgramsEvaluations) {
   EXPECT_EQ(r.termination, Termination::IterationLimit);
   for (int kind = 0; kind <= 6; ++kind) {
     const auto spec = [&](int generations) {
-      return "ga[variant=thesis,crossover=" + std::to_string(kind) + ",generations=" + std::to_string(generations) + "]";
+      return "ga[variant=thesis,crossover=" + std::to_string(kind) +
+             ",generations=" + std::to_string(generations) + "]";
     };
     EXPECT_LT(run_on(problem, spec(600), 1).cost, run_on(problem, spec(1), 1).cost) << kind;
   }
@@ -261,12 +266,15 @@ TEST(Genetic, RefusesImpossibleOptions) {
 
 TEST(ParticleSwarmThesis, FollowsItsEquation) {
   const Problem problem{testing::ValleyProblem()};
-  const auto cost = [&](const std::string& options) { return run_on(problem, "pso[variant=thesis,swarm=20," + options + "]", 9).cost; };
+  const auto cost = [&](const std::string& options) {
+    return run_on(problem, "pso[variant=thesis,swarm=20," + options + "]", 9).cost;
+  };
   // Without velocity and attraction nobody moves; each attraction alone does something, and they differ (the
   // thesis prints c1 in both terms).
   const double frozen = cost("inertia=0,c1=0,c2=0,iterations=1");
   EXPECT_EQ(cost("inertia=0,c1=0,c2=0,iterations=40"), frozen);
-  EXPECT_EQ(cost("inertia=0.7,c1=1.5,c2=0,iterations=40"), frozen);  // at its own best, at rest: p - x = 0 for ever
+  EXPECT_EQ(cost("inertia=0.7,c1=1.5,c2=0,iterations=40"),
+            frozen);  // at its own best, at rest: p - x = 0 for ever
   EXPECT_LT(cost("inertia=0.7,c1=0,c2=1.5,iterations=40"), frozen);
   EXPECT_NE(cost("inertia=0.7,c1=1.5,c2=1,iterations=40"), cost("inertia=0.7,c1=1,c2=1.5,iterations=40"));
   EXPECT_EQ(run_on(problem, "pso[variant=thesis]", 1).counts.total(), 100 * 501);

@@ -1,6 +1,6 @@
-// A quick problem with the difficulties of the real calibration and a known optimum: curvatures as the squares of the
-// real Jacobian's singular values (condition 2.3e9) in a fixed rotation, and six of twelve bounds active with multipliers
-// from 3 to 300.
+// A quick problem with the difficulties of the real calibration and a known optimum: curvatures as the
+// squares of the real Jacobian's singular values (condition 2.3e9) in a fixed rotation, and six of twelve
+// bounds active with multipliers from 3 to 300.
 //     J(x) = 98.1 + (x - x*)'H(x - x*) + g'(x - x*),   g_i x*_i < 0 where |x*_i| = 1, g_i = 0 elsewhere
 // Convex, and by the Karush-Kuhn-Tucker conditions J(x*) = 98.1 is the lowest cost in the box [-1, 1]^12.
 #pragma once
@@ -22,7 +22,8 @@ class ValleyProblem {
     for (Eigen::Index i = 0; i < n; ++i) list_.push_back({"x" + std::to_string(i + 1), "1", 0, -1, 1});
     Matrix seed(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) seed(i, j) = std::sin(static_cast<double>(2 + 5 * i + 11 * j + i * j));
+      for (Eigen::Index j = 0; j < n; ++j)
+        seed(i, j) = std::sin(static_cast<double>(2 + 5 * i + 11 * j + i * j));
     const Matrix q = Eigen::HouseholderQR<Matrix>(seed).householderQ();
     Vector d(n);
     d << 2903, 2524, 758, 166, 15.4, 14.7, 1.56, 1.22, 0.54, 0.37, 0.29, 0.06;
