@@ -1,16 +1,15 @@
 // Regression check: golden values of runs in a JSON file, compared with stated tolerances.
 //
 //   {"schema_version": 1,
-//    "tolerances": {"cost_relative": 1e-6, "error_m": 1e-6, "error_rad": 1e-6, "total": 6e-6,
-//    "evaluations_factor": 2}, "entries": [
-//      {"problem": "calibration", "dataset": "vitko2024", "label": "lm", "kind": "run", "cost": 98.11878293,
-//       "evaluations": 29,
+//    "tolerances": {"cost_relative": 1e-6, "error_m": 1e-6, "error_rad": 1e-6, "total": 6e-6, "evaluations_factor": 2},
+//    "entries": [
+//      {"problem": "calibration", "dataset": "vitko2024", "label": "lm", "kind": "run",
+//       "cost": 98.11878293, "evaluations": 29,
 //       "totals": {"x": 0.06, "y": 0.06, "theta": 0.25, "total": 0.37},
-//       "errors": {"line_x": {"x": {"e_max": 0.008, "e_sr": 0.008, "sigma": 0.0002}, "y": {..}, "theta":
-//       {..}}, ..}, "tolerances": {"cost_relative": 0.01}}]}
+//       "errors": {"line_x": {"x": {"e_max": 0.008, "e_sr": 0.008, "sigma": 0.0002}, "y": {..}, "theta": {..}}, ..},
+//       "tolerances": {"cost_relative": 0.01}}]}
 //
-// |found - expected| <= cost_relative |expected| for J; <= error_m, error_rad for the error cells of x, y and
-// theta;
+// |found - expected| <= cost_relative |expected| for J; <= error_m, error_rad for the error cells of x, y and theta;
 // <= total for the sums (table 42). found <= evaluations_factor * expected for evaluations, unchecked when
 // the factor is null or the entry has no "evaluations". "tolerances" of an entry override those of the file
 // one by one. null stands for a value that was not finite and is met only by such a value. Keys other than

@@ -18,12 +18,11 @@
 namespace odobench {
 
 // Everything, in this order, tables without content left out:
-//   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in
-//   brackets parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper
-//   rows first totals             sums of e_sr over the trajectories, total, change to nominal absolute and
-//   in % solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason,
-//   active bounds repeats            median, min, max, interquartile range of J, evaluations and time; runs
-//   near the best
+//   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in brackets
+//   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows first
+//   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %
+//   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active bounds
+//   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best
 // With several problems or data sets, ids begin with "PROBLEM.DATASET." and titles end with the names.
 // `notes` (for example: which parameters are barely determined) go below the parameter table of every group
 // that has one, else below its solver table.

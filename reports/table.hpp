@@ -71,14 +71,10 @@ std::string render(const std::vector<Table>& tables, Format format, const Render
 // The renderers behind it.
 //   console  aligned columns; text columns wrap, then the table is split into blocks of columns
 //   md       GitHub tables, a heading each
-//   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line
-//   `#note,text` per
-//            note; an empty line between tables. A column with differences (marks) is followed by a column
-//            for them.
-//   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id:
-//   cell},..],"notes":[..]}]};
-//            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than
-//            a value
+//   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line `#note,text` per
+//            note; an empty line between tables. A column with differences (marks) is followed by a column for them.
+//   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id: cell},..],"notes":[..]}]};
+//            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than a value
 //   latex    booktabs; a comment names the packages
 std::string render_console(const std::vector<Table>& tables, int width);
 std::string render_markdown(const std::vector<Table>& tables);
