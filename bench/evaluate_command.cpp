@@ -90,7 +90,9 @@ void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
   const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double value = set.values[static_cast<Eigen::Index>(i)];
-    if (value < parameters[i].lower || value > parameters[i].upper)
+    // Published values are rounded: 26.67 mm is one unit in the last place above 1.05 * 25.4 mm.
+    const double slack = 1e-9 * (parameters[i].upper - parameters[i].lower);
+    if (value < parameters[i].lower - slack || value > parameters[i].upper + slack)
       list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
                           parameters[i].lower, parameters[i].upper);
   }
