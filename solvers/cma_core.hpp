@@ -8,7 +8,8 @@
 //     p_c <- (1 - c_c) p_c + h_s sqrt(c_c (2 - c_c) mu_eff) <y>_w                                     (45)
 //     C <- (1 + c_1 d(h_s) - c_1 - c_mu sum w) C + c_1 p_c p_c' + c_mu sum_i w'_i y_i y_i'          (46)-(47)
 // with the default weights and rates of its table 1; the worse half has negative weights (active update) on
-// request: w'_i = w_i m / |C^(-1/2) y_i|^2 for those, w_i otherwise. The decomposition of C is renewed every 1 / (10 m (c_1 + c_mu)) generations.
+// request: w'_i = w_i m / |C^(-1/2) y_i|^2 for those, w_i otherwise. The decomposition of C is renewed every
+// 1 / (10 m (c_1 + c_mu)) generations.
 #pragma once
 
 #include <deque>

@@ -3,7 +3,7 @@
 //   start       every gene uniform in the box: nominal (0.95 + 0.1 rand) for the thesis' box of +-5 %
 //   selection   roulette: f_i = 1 - J_i / sum J, normalised; N parents, drawn with replacement
 //   couples     (1,2), (3,4), ...; each crosses with probability pc, otherwise the two pass unchanged
-//   mutation    each gene with probability pm times a factor uniform in [factor_low, factor_high], then clipped
+//   mutation    each gene with probability pm times a factor uniform in [factor_low, factor_high], clipped
 //   elitism     a random member of the new generation gives way to the best of the old one if that is better
 // Crossovers of parents p, q. The sums are s = c p + (1-c) q and t = (1-c) p + c q with one c, uniform in
 // [0, 1), per couple.
