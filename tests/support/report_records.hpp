@@ -31,11 +31,14 @@ inline RunRecord run_record(const std::string& label, double cost, int repetitio
 // One recording per entry of `x`; y and theta follow from it by factors 2 and 3.
 inline void add_errors(RunRecord& r, const std::string& trajectory, const std::vector<double>& x) {
   for (std::size_t n = 0; n < x.size(); ++n)
-    r.errors.push_back({trajectory + "_" + std::to_string(n + 1), trajectory, static_cast<int>(n + 1),
+    r.errors.push_back({trajectory + "_" + std::to_string(n + 1),
+                        trajectory,
+                        static_cast<int>(n + 1),
                         {x[n], 2 * x[n], 3 * x[n]}});
 }
 
-inline RunRecord calibration_record(const std::string& label, const std::string& kind, double cost, double error) {
+inline RunRecord calibration_record(const std::string& label, const std::string& kind, double cost,
+                                    double error) {
   RunRecord r = run_record(label, cost);
   r.problem = "calibration";
   r.dataset = "demo";
@@ -69,7 +72,9 @@ inline std::vector<RunRecord> reference_records(const nlohmann::json& reference)
     for (const std::string& trajectory : trajectories) {
       const auto& cells = set.at("errors").at(trajectory);
       for (std::size_t n = 0; n < 5; ++n)
-        r.errors.push_back({trajectory + "_" + std::to_string(n + 1), trajectory, static_cast<int>(n + 1),
+        r.errors.push_back({trajectory + "_" + std::to_string(n + 1),
+                            trajectory,
+                            static_cast<int>(n + 1),
                             {cells.at("x").at("per_repetition").at(n).get<double>(),
                              cells.at("y").at("per_repetition").at(n).get<double>(),
                              cells.at("theta").at("per_repetition").at(n).get<double>()}});
