@@ -51,6 +51,20 @@ void Problem::adopt(Interface& model) {
   if (model.start.size() != n)
     throw std::invalid_argument(
         fmt::format("problem '{}': start has {} values, expected {}", model.name, model.start.size(), n));
+  if (model.lattice_levels.empty()) return;
+  if (model.lattice_levels.size() != model.parameters.size())
+    throw std::invalid_argument(fmt::format("problem '{}': found {} lists of lattice levels, expected {}",
+                                            model.name, model.lattice_levels.size(), n));
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const Vector& levels = model.lattice_levels[i];
+    const ParameterInfo& p = model.parameters[i];
+    bool fine = levels.size() > 0 && levels[0] >= p.lower && levels[levels.size() - 1] <= p.upper;
+    for (Eigen::Index l = 1; l < levels.size(); ++l) fine = fine && levels[l - 1] < levels[l];
+    if (!fine)
+      throw std::invalid_argument(
+          fmt::format("problem '{}', parameter '{}': expected ascending lattice levels within [{}, {}]",
+                      model.name, p.name, p.lower, p.upper));
+  }
 }
 
 double Problem::cost(const ConstVectorRef& x) const {
@@ -81,6 +95,15 @@ void Problem::normal_equations(const ConstVectorRef& x, NormalEquations& out) co
 void Problem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
   std::atomic_ref<std::int64_t>(counts_.cost).fetch_add(candidates.cols(), std::memory_order_relaxed);
   model_->batch_cost(candidates, costs);
+}
+
+std::unique_ptr<LatticePoint> Problem::lattice_point(const ConstVectorRef& x) const {
+  return model_->lattice_point(x);
+}
+
+double Problem::lattice_change(const LatticePoint& point, Eigen::Index i, double value) const {
+  ++counts_.lattice;
+  return point.change(i, value);
 }
 
 }  // namespace odobench

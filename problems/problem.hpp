@@ -19,6 +19,9 @@
 #include <string>
 #include <vector>
 
+#include "problems/block_quadratic.hpp"
+#include "problems/lattice.hpp"
+
 namespace odobench {
 
 using Vector = Eigen::VectorXd;
@@ -54,7 +57,8 @@ struct EvaluationCounts {
   std::int64_t gradient = 0;
   std::int64_t residuals = 0;
   std::int64_t normal_equations = 0;
-  std::int64_t total() const { return cost + gradient + residuals + normal_equations; }
+  std::int64_t lattice = 0;  // changes of a lattice point that were looked at
+  std::int64_t total() const { return cost + gradient + residuals + normal_equations + lattice; }
 };
 
 template <class M>
@@ -86,6 +90,17 @@ concept HasBatchCost = requires(const M& m, const ConstMatrixRef& candidates, Ve
 template <class M>
 concept HasStart = requires(const M& m) {
   { m.start() } -> std::convertible_to<Vector>;
+};
+// Admissible values of every parameter, each list ascending and inside the box, and a point that walks on them.
+template <class M>
+concept HasLattice = requires(const M& m, const ConstVectorRef& x) {
+  { m.lattice_levels() } -> std::convertible_to<const std::vector<Vector>&>;
+  { m.lattice_point(x) } -> std::same_as<std::unique_ptr<LatticePoint>>;
+};
+// The cost is exactly this sum of quadratic blocks.
+template <class M>
+concept HasBlockQuadratic = requires(const M& m) {
+  { m.block_quadratic() } -> std::convertible_to<const BlockQuadratic&>;
 };
 // Lowest cost in the box, where it is known from theory.
 template <class M>
@@ -122,6 +137,11 @@ class Problem {
   bool has_normal_equations() const { return model_->has_normal_equations; }
   bool has_fast_batch() const { return model_->has_batch; }
   Eigen::Index residual_count() const { return model_->residual_count; }
+  bool has_lattice() const { return !model_->lattice_levels.empty(); }
+  // Empty without has_lattice().
+  const std::vector<Vector>& lattice_levels() const { return model_->lattice_levels; }
+  // Null when the cost has no such form.
+  const BlockQuadratic* block_quadratic() const { return model_->block_quadratic(); }
 
   double cost(const ConstVectorRef& x) const;
   // Returns J, fills g = dJ/dx (n). Throws std::logic_error without has_gradient().
@@ -132,6 +152,10 @@ class Problem {
   // Throws std::logic_error without has_normal_equations().
   void normal_equations(const ConstVectorRef& x, NormalEquations& out) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
+  // x must be admissible. Throws std::logic_error without has_lattice().
+  std::unique_ptr<LatticePoint> lattice_point(const ConstVectorRef& x) const;
+  // point.change(i, value), counted.
+  double lattice_change(const LatticePoint& point, Eigen::Index i, double value) const;
 
   const EvaluationCounts& counts() const { return counts_; }
 
@@ -144,12 +168,15 @@ class Problem {
     virtual void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const = 0;
     virtual void normal_equations(const ConstVectorRef& x, NormalEquations& out) const = 0;
     virtual void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const = 0;
+    virtual std::unique_ptr<LatticePoint> lattice_point(const ConstVectorRef& x) const = 0;
+    virtual const BlockQuadratic* block_quadratic() const = 0;
     std::string name;
     std::vector<ParameterInfo> parameters;
     Vector start;
     std::optional<double> known_optimum;
     bool has_gradient = false, has_residuals = false, has_normal_equations = false, has_batch = false;
     Eigen::Index residual_count = 0;
+    std::vector<Vector> lattice_levels;
   };
   template <ProblemModel M>
   struct Holder;
@@ -172,6 +199,7 @@ struct Problem::Holder final : Interface {
     has_gradient = HasGradient<M> || has_normal_equations;
     has_batch = HasBatchCost<M>;
     if constexpr (HasResiduals<M>) residual_count = model->residual_count();
+    if constexpr (HasLattice<M>) lattice_levels = model->lattice_levels();
   }
   double cost(const ConstVectorRef& x) const override { return model->cost(x); }
   double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const override {
@@ -216,6 +244,18 @@ struct Problem::Holder final : Interface {
     } else {
       for (Eigen::Index k = 0; k < candidates.cols(); ++k) costs[k] = model->cost(candidates.col(k));
     }
+  }
+  std::unique_ptr<LatticePoint> lattice_point(const ConstVectorRef& x) const override {
+    if constexpr (HasLattice<M>)
+      return model->lattice_point(x);
+    else
+      absent("a lattice", name);
+  }
+  const BlockQuadratic* block_quadratic() const override {
+    if constexpr (HasBlockQuadratic<M>)
+      return &model->block_quadratic();
+    else
+      return nullptr;
   }
   std::shared_ptr<const M> model;
 };

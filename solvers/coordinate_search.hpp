@@ -4,6 +4,10 @@
 // the box is put on the bound; one that this would leave at u is not evaluated. Deterministic, needs no
 // derivatives, survives plateaus and non-finite costs, and crawls in a rotated valley: it is the baseline of
 // the others (a compass search: Kolda, Lewis, Torczon, SIAM Review 45, 2003).
+// On a problem with a lattice of admissible values it walks there instead, from the admissible point nearest to the
+// start: a scan looks at every change of one parameter to another of its levels, and makes the best one. The first
+// among equals wins, in the order of the parameters and, within one, from the highest level down (T. Stirblys, Kaunas
+// 2015, section 2.2.2, for the levels -1, 0, 1). Iterations count the scans, the last and unsuccessful one included.
 #pragma once
 
 #include "solvers/solver.hpp"
@@ -14,6 +18,7 @@ struct CoordinateSearchOptions {
   double step = 0.5;  // half-widths of the box
   double tolerance = 1e-9;
   int moves = 5000;
+  bool lattice = true;
   void bind(OptionBinder& binder);
   void validate() const;
 };
@@ -25,6 +30,7 @@ class CoordinateSearch final : public Solver {
   Outcome minimise(Run& run) const override;
 
  private:
+  Outcome minimise_on_lattice(Run& run) const;
   CoordinateSearchOptions options_;
 };
 

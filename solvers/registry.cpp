@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "solvers/block_solvers.hpp"
 #include "solvers/ceres_solver.hpp"
 #include "solvers/cmaes.hpp"
 #include "solvers/coordinate_search.hpp"
@@ -26,6 +27,8 @@ const std::vector<SolverEntry>& solver_registry() {
     rows.push_back(particle_swarm_entry());
     rows.push_back(cmaes_entry());
     rows.push_back(coordinate_search_entry());
+    rows.push_back(exact_search_entry());
+    rows.push_back(relaxed_search_entry());
     for (SolverEntry& entry : nlopt_entries()) rows.push_back(std::move(entry));
     return rows;
   }();

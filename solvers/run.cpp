@@ -192,6 +192,29 @@ void Run::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) {
   }
 }
 
+std::unique_ptr<LatticePoint> Run::lattice_point() {
+  Vector x = box_.to_parameters(start_);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Vector& levels = problem_.lattice_levels()[static_cast<std::size_t>(i)];
+    Eigen::Index nearest = 0;
+    (levels.array() - x[i]).abs().minCoeff(&nearest);
+    x[i] = levels[nearest];
+  }
+  return problem_.lattice_point(x);
+}
+
+double Run::lattice_change(const LatticePoint& point, Eigen::Index i, double value) {
+  if (stop()) return kInfinity;
+  const double change = problem_.lattice_change(point, i, value);
+  if (std::isfinite(change)) return change;
+  ++non_finite_;
+  return kInfinity;
+}
+
+void Run::lattice_visit(const LatticePoint& point) {
+  if (!stop()) accept(point.cost(), point.x(), box_.to_unit(point.x()));
+}
+
 void Run::iteration() {
   ++iterations_;
   if (!observer_) return;

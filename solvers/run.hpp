@@ -73,6 +73,12 @@ class Run {
   // candidates m x k, one per column; costs k. Candidates beyond the budget get +infinity.
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs);
 
+  // A walk on the problem's lattice, in parameter units. lattice_point gives the admissible point nearest to start();
+  // lattice_change is +infinity once stop() holds; lattice_visit takes the point into account for the best.
+  std::unique_ptr<LatticePoint> lattice_point();
+  double lattice_change(const LatticePoint& point, Eigen::Index i, double value);
+  void lattice_visit(const LatticePoint& point);
+
   // True when the method must return; the reason is kept. Cheap: methods and adapters ask as often as they like.
   bool stop();
   // One iteration of the method is done: counts it and tells the observer.

@@ -1,0 +1,30 @@
+// Minimising a sum of independent quadratic blocks (problems/block_quadratic.hpp) over t in {-1, 0, 1}^n or [-1, 1]^n:
+// the searches behind the solvers `exact` and `relaxed`, and the inner loops of the relative-entropy filter.
+// All of them refuse (std::invalid_argument) a block that is not square, finite, symmetric and positive definite.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "problems/problem.hpp"
+#include "solvers/ternary_kernel.hpp"
+
+namespace odobench {
+
+// Greedy from t = 0 (T. Stirblys, Kaunas 2015, section 2.2.2): in each scan the single change of lowest cost, the first
+// one among equals in the order i = 0.., within i the other levels from 1 down. Blocks do not meet, so each is searched
+// by itself; iterations = 1 + changes, as if all were scanned together. A call allocates nothing.
+std::unique_ptr<BlockSearch> ternary_greedy(const std::vector<QuadraticBlock>& blocks,
+                                            const ternary::Kernel& kernel = ternary::available().front());
+
+// The lattice optimum. Variables that no choice of the others can turn are fixed first; what is left of a block of at
+// most 10 is enumerated with tables made once, of a larger one by branch and bound, which polls `stop` now and then:
+// when that holds the answer is the best found so far. `evaluations` counts candidates, or nodes.
+std::unique_ptr<BlockSearch> ternary_exact(const std::vector<QuadraticBlock>& blocks,
+                                           std::function<bool()> stop = {},
+                                           const ternary::Kernel& kernel = ternary::available().front());
+
+// The optimum of the relaxation [-1, 1]^n.
+std::unique_ptr<BlockSearch> box_relaxation(const std::vector<QuadraticBlock>& blocks);
+
+}  // namespace odobench
