@@ -11,12 +11,15 @@
 #include "bench/check_command.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
+#include "bench/filter_arguments.hpp"
+#include "bench/filter_command.hpp"
 #include "bench/import_command.hpp"
 #include "bench/list_command.hpp"
 #include "bench/number_text.hpp"
 #include "bench/run_arguments.hpp"
 #include "bench/run_command.hpp"
 #include "bench/table_output.hpp"
+#include "bench/windows_command.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {
@@ -28,6 +31,8 @@ constexpr const char* kExamples = R"(Examples:
   bench --solver="pso[swarm=60],ga" --polish=lm --out=results
   bench --solver=all --problem=rosenbrock --dimension=6 --start=random
   bench evaluate --data=set.json --parameters=nominal,mine.json
+  bench filter --data=run.csv --truth=truth.csv --out=filtered.csv
+  bench windows windows.json --solver=coordinate,exact,relaxed,lm,pso
   bench list solvers
   bench import vitko2024 --from=DIR --out=set.json
   bench check --baseline=golden.json results
@@ -49,6 +54,8 @@ struct Arguments {
   std::string config;
   EvaluateOptions evaluate;
   ListOptions list;
+  FilterOptions filter;
+  WindowsOptions windows;
   ImportOptions import;
   DemoOptions demo;
   CheckOptions check;
@@ -111,6 +118,12 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
   add_run_options(*run, a.run, a.config);
   run->footer(kRunExamples);
 
+  CLI::App* filter = app.add_subcommand("filter", "the relative-entropy filter over a recorded run");
+  add_filter_options(*filter, a.filter);
+  CLI::App* windows =
+      app.add_subcommand("windows", "solve windows of the relative-entropy filter and compare the methods");
+  add_windows_options(*windows, a.windows);
+
   CLI::App* import = app.add_subcommand("import", "make a data set of published raw files");
   import->add_option("source", a.import.source, "vitko2024")->required();
   import->add_option("--from", a.import.from, "folder with the raw files")->required()->type_name("DIR");
@@ -131,6 +144,8 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
              if (!a.config.empty()) apply_config(*run, a.config);
              return run_command(a.run);
            }},
+          {filter, [&a] { return filter_command(a.filter); }},
+          {windows, [&a] { return windows_command(a.windows); }},
           {import, [&a] { return import_command(a.import); }},
           {demo, [&a] { return demo_command(a.demo); }}};
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/entropy_window.hpp"
 #include "solvers/run.hpp"
 
 namespace odobench {
@@ -25,6 +26,45 @@ struct RunOptions {
   std::string start = "nominal";
   std::string polish;  // solver, as typed; empty: none
   std::string out;     // folder for records and tables; empty: none
+  bool overwrite = false;
+  std::string format = "console";
+  bool quiet = false;
+};
+
+// Where the thesis' program and the corrected filter differ; what is not set follows FilterOptions::as_published.
+struct FilterOptions {
+  std::string data;                   // CSV file, "-" for standard input
+  std::string truth;                  // CSV file; empty: none
+  std::string solver = "coordinate";  // coordinate, exact, relaxed, zero, or any of the registry as typed
+  std::string out;                    // CSV file; empty: none
+  std::string records;                // folder for the run record and tables; empty: none
+  std::vector<std::string> columns, truth_columns;  // name=column lists as typed
+  bool as_published = false;
+  std::optional<std::string> theta;                // of the thesis' layout: step-deg, ..., raw
+  std::optional<std::string> accelerometer_frame;  // robot | filter
+  std::optional<bool> omega_cross_v;
+  std::optional<std::string> wheel_order;  // right-first | left-first
+  std::optional<double> dt;                // s; none: from time_s
+  double time_tolerance = 0.01;            // relative
+  EntropyConstants constants;              // dt and step_rotation apart
+  std::optional<double> step_rotation;     // deg/s^2
+  bool gap = false;                        // compare with exact and relaxed
+  std::uint64_t seed = 1;
+  Budget budget{kDefaultMaxEvaluations};  // per window, of a solver of the registry
+  bool overwrite = false;
+  std::string format = "console";
+  bool quiet = false;
+};
+
+struct WindowsOptions {
+  std::string file;
+  std::vector<std::string> solvers;  // each a comma list as typed; empty: coordinate,exact,relaxed
+  std::vector<std::string> only;     // comma lists of ids or groups; empty: all windows
+  int repeat = 1;
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: one per core
+  Budget budget{kDefaultMaxEvaluations};
+  std::string out;  // folder for records and tables; empty: none
   bool overwrite = false;
   std::string format = "console";
   bool quiet = false;

@@ -9,34 +9,26 @@
 #include "solvers/options.hpp"
 
 namespace odobench {
-namespace {
 
-using Setter = std::function<void(const std::string&)>;
-
-// Values are parsed by us and not by CLI11: its messages do not say what was expected.
 CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type, const std::string& help,
-                       const Setter& set) {
+                       const std::function<void(const std::string&)>& set) {
   return app.add_option_function<std::string>(name, set, help)->type_name(type);
 }
 
-void add_budget(CLI::App& app, RunOptions& options) {
+void add_budget(CLI::App& app, Budget& budget) {
   add_value(app, "--max-evals", "N",
             fmt::format("evaluations (costs and derivatives) of a run at most; 'none' lifts the limit [{}]",
                         kDefaultMaxEvaluations),
-            [&options](const std::string& text) {
-              options.budget.max_evaluations = text == "none" ? 0 : whole_number("--max-evals", text, 1);
+            [&budget](const std::string& text) {
+              budget.max_evaluations = text == "none" ? 0 : whole_number("--max-evals", text, 1);
             });
-  add_value(app, "--time-limit", "S", "seconds of a run at most [unlimited]",
-            [&options](const std::string& text) {
-              options.budget.max_seconds = finite_number("--time-limit", text, true);
-            });
-  add_value(app, "--target", "J", "stop a run once its cost is at most this",
-            [&options](const std::string& text) {
-              options.budget.target_cost = finite_number("--target", text, false);
-            });
+  add_value(
+      app, "--time-limit", "S", "seconds of a run at most [unlimited]",
+      [&budget](const std::string& text) { budget.max_seconds = finite_number("--time-limit", text, true); });
+  add_value(
+      app, "--target", "J", "stop a run once its cost is at most this",
+      [&budget](const std::string& text) { budget.target_cost = finite_number("--target", text, false); });
 }
-
-}  // namespace
 
 void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
   app.add_option(
@@ -61,7 +53,7 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
             [&options](const std::string& text) {
               options.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
             });
-  add_budget(app, options);
+  add_budget(app, options.budget);
   add_value(app, "--start", "nominal|random",
             "where runs begin; random starts are shared by all solvers [nominal]",
             [&options](const std::string& text) {

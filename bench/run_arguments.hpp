@@ -1,12 +1,19 @@
-// The options of `bench run`, the verb that most of them belong to.
+// The options of `bench run`, and what other verbs have in common with it.
 #pragma once
 
 #include <CLI/App.hpp>
+#include <functional>
 #include <string>
 
 #include "bench/command_options.hpp"
 
 namespace odobench {
+
+// An option whose value `set` parses: CLI11's own messages do not say what was expected.
+CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type, const std::string& help,
+                       const std::function<void(const std::string&)>& set);
+// --max-evals, --time-limit, --target.
+void add_budget(CLI::App& app, Budget& budget);
 
 // Adds the options to `app`, writing to `options`, which must outlive it. `config` receives --config.
 void add_run_options(CLI::App& app, RunOptions& options, std::string& config);

@@ -76,6 +76,19 @@ std::string read_file(const fs::path& file) {
   return bytes;
 }
 
+void read_pieces(const fs::path& file, std::size_t piece, const std::function<void(std::string_view)>& take) {
+  const Descriptor d(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (d.fd < 0) fail(file, "cannot be read", last_error());
+  std::string bytes(piece, '\0');
+  for (;;) {
+    const ssize_t n = ::read(d.fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(file, "cannot be read", last_error());
+    if (n == 0) return;
+    take(std::string_view(bytes).substr(0, static_cast<std::size_t>(n)));
+  }
+}
+
 void write_file(const fs::path& file, std::string_view bytes) {
   FileTransaction transaction;
   transaction.add(file, bytes);
@@ -106,6 +119,14 @@ void FileTransaction::add(const fs::path& file, std::string_view bytes) {
   entries_.push_back(entry);
   write_all(d.fd, bytes, file);
   if (!d.close()) fail(file, "cannot be written", last_error());
+}
+
+void FileTransaction::append(std::string_view bytes) {
+  const Entry& entry = entries_.back();
+  Descriptor d(::open(entry.temporary.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (d.fd < 0) fail(entry.target, "cannot be written", last_error());
+  write_all(d.fd, bytes, entry.target);
+  if (!d.close()) fail(entry.target, "cannot be written", last_error());
 }
 
 void FileTransaction::commit() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@ namespace odobench {
 
 // The bytes of a file, as they are.
 std::string read_file(const std::filesystem::path& file);
+
+// The same in pieces of at most `piece` bytes, valid during the call that gets them.
+void read_pieces(const std::filesystem::path& file, std::size_t piece,
+                 const std::function<void(std::string_view)>& take);
 
 // Writes one file so that a reader sees the old content or the new, never a part (FileTransaction with one
 // file).
@@ -30,6 +35,8 @@ class FileTransaction {
   ~FileTransaction();
 
   void add(const std::filesystem::path& file, std::string_view bytes);
+  // More bytes for the file added last: files that are too long to be put together in memory.
+  void append(std::string_view bytes);
   void commit();
 
  private:

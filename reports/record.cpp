@@ -128,6 +128,10 @@ void read_outcome(const JsonView& view, RunRecord& r) {
   view.at("trace").each_item([&](const JsonView& item) { r.trace.push_back(trace_point_from(item)); });
   if (const auto notes = view.find("notes"))  // absent in records of other makers: none
     notes->each_item([&](const JsonView& item) { r.notes.push_back(item.string()); });
+  if (const auto group = view.find("group")) r.group = group->string();
+  if (const auto statistics = view.find("statistics"))
+    statistics->each_field(
+        [&](const std::string& key, const JsonView& value) { r.statistics[key] = value.number(); });
   r.context = context_from(view.at("context"));
   r.time_utc = view.at("time_utc").string();
 }
@@ -165,6 +169,8 @@ json to_json(const RunRecord& r) {
            {"context", to_json(r.context)},
            {"time_utc", r.time_utc}};
   for (const auto& [key, value] : r.options) out["options"][key] = value;
+  if (!r.group.empty()) out["group"] = r.group;
+  for (const auto& [key, value] : r.statistics) out["statistics"][key] = finite_or_null(value);
   return out;
 }
 

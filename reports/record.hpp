@@ -73,6 +73,9 @@ struct RunRecord {
   std::int64_t iterations = 0;
   double seconds = 0;
   std::vector<TracePoint> trace;
+  std::string group;  // of data sets with groups: the one that this member is in
+  // Figures beyond cost and errors by name; reports/filter_tables.hpp and reports/window_tables.hpp say which.
+  std::map<std::string, double> statistics;
   std::vector<std::string> notes;  // remarks on this result, e.g. which parameters are barely determined
   RunContext context;
   std::string time_utc;  // ISO 8601 start of the run

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/record.hpp"
-#include "tests/support/run_process.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace odobench {
 namespace {
@@ -15,8 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using testing::bench_words;
 using testing::content;
+using testing::expect_refusal;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::kData;
+using testing::kInterrupted;
+using testing::kUsage;
 using testing::lines;
 using testing::Process;
 using testing::ProcessResult;
@@ -24,24 +28,6 @@ using testing::run_bench;
 using ::testing::StartsWith;
 using testing::TemporaryFolder;
 using testing::wait_for_lines;
-
-constexpr int kUsage = 2;
-constexpr int kData = 3;
-constexpr int kInterrupted = 130;
-
-// Fails with `code` and one line on standard error that holds every one of `parts`; standard output stays
-// empty.
-void expect_refusal(const std::vector<std::string>& words, int code, const std::vector<std::string>& parts) {
-  const ProcessResult result = run_bench(words);
-  std::string command;
-  for (const std::string& word : words) command += " " + word;
-  SCOPED_TRACE(command);
-  EXPECT_EQ(result.exit_code, code) << result.err;
-  EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_EQ(lines(result.err).size(), 1u) << result.err;
-  EXPECT_THAT(result.err, StartsWith("bench: error: "));
-  for (const std::string& part : parts) EXPECT_THAT(result.err, HasSubstr(part));
-}
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;

@@ -38,6 +38,28 @@ TEST(FileIo, AnAbandonedTransactionLeavesNothing) {
   EXPECT_TRUE(everything_in(folder.path()).empty());
 }
 
+TEST(FileIo, AppendedPiecesAppearTogether) {
+  const TemporaryFolder folder;
+  const std::string one(100000, 'a'), two(70000, 'b');
+  {
+    FileTransaction files;
+    files.add(folder / "long", "head ");
+    files.append(one);
+    EXPECT_FALSE(fs::exists(folder / "long"));
+    files.append(two);
+    files.commit();
+  }
+  EXPECT_EQ(read_file(folder / "long"), "head " + one + two);
+  EXPECT_EQ(everything_in(folder.path()), std::vector<std::string>{"long"});
+  std::string pieces;
+  read_pieces(folder / "long", 4096, [&](std::string_view piece) {
+    EXPECT_LE(piece.size(), 4096u);
+    pieces += piece;
+  });
+  EXPECT_EQ(pieces, "head " + one + two);
+  EXPECT_EQ(sha256_of_file(folder / "long"), sha256(pieces));
+}
+
 TEST(Sha256, StandardVectors) {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

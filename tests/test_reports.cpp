@@ -41,6 +41,8 @@ RunRecord full_record() {
   r.non_finite = 13;
   r.iterations = 14;
   r.trace = {{1, 0.001, 1135.3322706653605}, {50, 0.1, 1.0 / 3}};
+  r.group = "steered";
+  r.statistics = {{"gap_exact_mean", 1.0 / 3}, {"windows", 189}};
   r.notes = {"a1 and b1 are barely determined", ""};
   r.context = {"some cpu", "g++ 12.2", "Release", "deadbeef", "0.1.0", 2};
   r.time_utc = "2026-11-22T10:00:00Z";
@@ -98,7 +100,9 @@ TEST(Record, EveryFieldSurvivesTheRoundTrip) {
   EXPECT_EQ(back.parameters.at(0).at_bound, "upper");
   EXPECT_EQ(back.trace.at(1).evaluations, 50);
   EXPECT_EQ(back.notes, r.notes);
-  EXPECT_EQ(to_json(r).size(), 29u) << "a new field needs a place in both directions and in this test";
+  EXPECT_EQ(back.group, r.group);
+  EXPECT_EQ(back.statistics, r.statistics);
+  EXPECT_EQ(to_json(r).size(), 31u) << "a new field needs a place in both directions and in this test";
 }
 
 TEST(Record, DoublesKeepEveryBit) {
@@ -157,8 +161,11 @@ TEST(Record, EveryMissingFieldIsNamed) {
   for (const auto& field : complete.items()) {
     auto broken = complete;
     broken.erase(field.key());
-    if (field.key() == "notes") {
-      EXPECT_TRUE(record_from_json(broken).notes.empty());
+    if (field.key() == "notes" || field.key() == "group" || field.key() == "statistics") {
+      const RunRecord without = record_from_json(broken);
+      EXPECT_EQ(without.notes.empty(), field.key() == "notes");
+      EXPECT_EQ(without.group.empty(), field.key() == "group");
+      EXPECT_EQ(without.statistics.empty(), field.key() == "statistics");
       continue;
     }
     EXPECT_THAT([&] { record_from_json(broken); },

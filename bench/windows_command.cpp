@@ -1,0 +1,234 @@
+#include "bench/windows_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/cells.hpp"
+#include "bench/context.hpp"
+#include "bench/interrupt.hpp"
+#include "bench/progress.hpp"
+#include "bench/records.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/entropy_window_file.hpp"
+#include "datasets/sha256.hpp"
+#include "problems/entropy/direct_form.hpp"
+#include "problems/entropy/window_problem.hpp"
+#include "reports/window_tables.hpp"
+#include "solvers/options.hpp"
+#include "solvers/ternary_search.hpp"
+
+namespace odobench {
+namespace {
+
+// A window with what its results are measured against.
+struct LoadedWindow {
+  EntropyWindow window;
+  LoadedProblem loaded;
+  double zero = 0, exact = 0, relaxed = 0;  // H
+};
+
+double value_at(const EntropyWindow& window, const Vector& t, EntropyState& state) {
+  const Vector values = increments(window.constants, t);
+  state = closed_form(window, values);
+  return hamiltonian(window, values, state);
+}
+
+// H at the solution of a search, worked out like H of every result: what is the same t has the same H to the last bit.
+double optimum(const EntropyWindow& window, const BlockQuadratic& cost, BlockSearch& search) {
+  const Vector g = cost.stacked_g();
+  Vector x(g.size());
+  const auto size = static_cast<std::size_t>(g.size());
+  search.minimise({g.data(), size}, {x.data(), size});
+  EntropyState state;
+  return value_at(window, cost.unstack(x), state);
+}
+
+LoadedWindow load(const EntropyWindow& window) {
+  LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", ""}};
+  const BlockQuadratic& cost = *w.loaded.problem.block_quadratic();
+  EntropyState state;
+  w.zero = value_at(window, w.loaded.problem.start(), state);
+  w.exact = optimum(window, cost, *ternary_exact(cost.blocks));
+  w.relaxed = optimum(window, cost, *box_relaxation(cost.blocks));
+  return w;
+}
+
+void add_statistics(const LoadedWindow& w, const Vector& t, RunRecord& record) {
+  EntropyState state;
+  record.statistics["hamiltonian"] = value_at(w.window, t, state);
+  record.statistics["r1"] = state.r1;
+  record.statistics["sx1"] = state.sx1;
+  record.statistics["sy1"] = state.sy1;
+  record.statistics["ax12"] = state.ax12;
+  record.statistics["ay12"] = state.ay12;
+  record.statistics["hamiltonian_rounded"] = value_at(w.window, t.array().round().matrix(), state);
+  record.statistics["hamiltonian_zero"] = w.zero;
+  record.statistics["hamiltonian_exact"] = w.exact;
+  record.statistics["hamiltonian_relaxed"] = w.relaxed;
+}
+
+// Records of the cells of one window, on disc at once and in memory in the order of the cells.
+class WindowRecorder final : public CellWatcher {
+ public:
+  WindowRecorder(const LoadedWindow& window, const std::string& dataset, const std::string& sha256,
+                 const std::vector<RunCell>& cells, std::uint64_t base_seed, const RunContext& context,
+                 RecordFile* file, ProgressLine& progress, std::size_t first)
+      : window_(window),
+        dataset_(dataset),
+        sha256_(sha256),
+        cells_(cells),
+        base_seed_(base_seed),
+        context_(context),
+        file_(file),
+        progress_(progress),
+        first_(first),
+        records_(cells.size()) {}
+
+  void started(std::size_t cell) override { progress_.started(first_ + cell); }
+  void progressed(std::size_t cell, const Progress& progress) override {
+    progress_.progressed(first_ + cell, progress);
+  }
+  void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
+    RunRecord r = run_record(window_.loaded, cells_[cell], base_seed_, result, context_, time_utc);
+    r.dataset = dataset_;
+    r.dataset_sha256 = sha256_;
+    r.group = window_.window.group;
+    r.statistics["samples"] = window_.window.constants.samples;
+    if (result.usable()) add_statistics(window_, result.x, r);
+    {
+      const std::lock_guard lock(mutex_);
+      if (file_ != nullptr) file_->append(r);
+      records_[cell] = std::move(r);
+    }
+    progress_.finished(first_ + cell);
+  }
+
+  // Of the cells that ran, in their order, moved behind `list`.
+  void move_to(std::vector<RunRecord>& list) {
+    for (auto& record : records_)
+      if (record) list.push_back(std::move(*record));
+  }
+
+ private:
+  const LoadedWindow& window_;
+  const std::string dataset_, sha256_;
+  const std::vector<RunCell>& cells_;
+  const std::uint64_t base_seed_;
+  const RunContext& context_;
+  RecordFile* file_;
+  ProgressLine& progress_;
+  const std::size_t first_;
+  std::mutex mutex_;
+  std::vector<std::optional<RunRecord>> records_;
+};
+
+std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std::vector<std::string>& only) {
+  if (only.empty()) return windows;
+  std::vector<std::string> known;
+  for (const EntropyWindow& w : windows) {
+    known.push_back(w.id);
+    if (!w.group.empty()) known.push_back(w.group);
+  }
+  std::set<std::string> wanted;
+  for (const std::string& list : only)
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      const std::string name = list.substr(begin, end - begin);
+      begin = end + 1;
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        const std::string near = nearest_name(name, known);
+        throw std::invalid_argument(
+            fmt::format("--only={}: no window or group of the file{}", name,
+                        near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+      }
+      wanted.insert(name);
+    }
+  std::vector<EntropyWindow> some;
+  for (EntropyWindow& w : windows)
+    if (wanted.count(w.id) != 0 || wanted.count(w.group) != 0) some.push_back(std::move(w));
+  return some;
+}
+
+// "lm" for one method, "p003 lm" for a line that shows several windows at once.
+std::vector<std::string> progress_labels(const std::vector<EntropyWindow>& windows,
+                                         const std::vector<RunCell>& cells) {
+  std::vector<std::string> labels;
+  for (const EntropyWindow& w : windows)
+    for (const RunCell& cell : cells) labels.push_back(w.id + " " + cell.label());
+  return labels;
+}
+
+ExitCode outcome(const std::vector<RunRecord>& records, std::size_t planned, bool interrupted,
+                 const std::string& out) {
+  std::size_t stopped = 0;
+  bool any = false;
+  for (const RunRecord& r : records) {
+    if (r.termination == to_string(Termination::Interrupted)) ++stopped;
+    any = any || (r.kind == "run" && r.cost);
+  }
+  if (interrupted && (stopped > 0 || records.size() < planned)) {
+    note(fmt::format("interrupted: {} of {} runs complete{}", records.size() - stopped, planned,
+                     out.empty() ? "" : "; records are in " + out));
+    return ExitCode::Interrupted;
+  }
+  if (any) return ExitCode::Success;
+  warn("not one solver gave a result");
+  return ExitCode::CheckFailed;
+}
+
+}  // namespace
+
+ExitCode windows_command(const WindowsOptions& options) {
+  const Format format = parse_format(options.format);
+  std::vector<std::string> notes;
+  CellPlan plan;
+  plan.solvers = resolve_solvers(
+      options.solvers.empty() ? std::vector<std::string>{"coordinate,exact,relaxed"} : options.solvers,
+      notes);
+  plan.repeat = options.repeat;
+  plan.base_seed = options.seed;
+  plan.problem = kWindowProblem;
+  const std::vector<EntropyWindow> windows = chosen(load_entropy_windows(options.file), options.only);
+  const std::string stem = std::filesystem::path(options.file).stem().string();
+  const std::string sha256 = sha256_of_file(options.file);
+  const int threads = options.threads > 0
+                          ? options.threads
+                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const RunContext context = run_context(threads);
+  const std::size_t per_window = plan_cells(plan, notes).size();
+  std::unique_ptr<RecordFile> file;
+  if (!options.out.empty()) file = std::make_unique<RecordFile>(options.out, options.overwrite);
+  if (!options.quiet)
+    for (const std::string& text : notes) note(text);
+
+  const InterruptGuard guard;
+  std::vector<std::string> ignored;
+  ProgressLine progress(!options.quiet, progress_labels(windows, plan_cells(plan, ignored)));
+  std::vector<RunRecord> records;
+  for (std::size_t i = 0; i < windows.size() && !InterruptGuard::flag().load(); ++i) {
+    const LoadedWindow window = load(windows[i]);
+    plan.dataset = stem + "/" + windows[i].id;
+    const std::vector<RunCell> cells = plan_cells(plan, ignored);
+    WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, context, file.get(),
+                            progress, i * per_window);
+    run_cells(window.loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
+    recorder.move_to(records);
+  }
+  progress.clear();
+  if (records.empty()) throw Interruption();
+  const bool machine = format == Format::Json || format == Format::Csv;
+  if (file) save_tables(window_tables(records, false), options.out);
+  print_tables(window_tables(records, machine), format);
+  return outcome(records, windows.size() * per_window, InterruptGuard::flag().load(), options.out);
+}
+
+}  // namespace odobench
