@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -194,6 +197,42 @@ TEST(CliFilter, APipeGivesTheSameBits) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(content(a), content(b));
   EXPECT_EQ(lines(content(b)).size(), 1u + 3000 - 9);
+}
+
+// Largest resident memory of bench with these words [KiB].
+long peak_memory(const std::vector<std::string>& words) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<std::string> copy = testing::bench_words(words);
+    std::vector<char*> argv;
+    for (std::string& word : copy) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    if (freopen("/dev/null", "w", stdout) != nullptr) execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  rusage usage = {};
+  EXPECT_EQ(wait4(child, &status, 0, &usage), child);
+  EXPECT_EQ(status, 0);
+  return usage.ru_maxrss;
+}
+
+TEST(CliFilter, MemoryDoesNotGrowWithTheRun) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer keeps freed memory";
+#endif
+  const TemporaryFolder folder;
+  const std::string data = (folder / "run.csv").string();
+  const auto peak = [&](int rows) {
+    {
+      std::ofstream file(data);  // not through a string: a forked process begins with the memory of this one
+      testing::write_plain_run(file, rows);
+    }
+    return peak_memory(
+        {"filter", "--data=" + data, "--gap", "--out=" + (folder / "out.csv").string(), "--overwrite"});
+  };
+  const long small = peak(1000), large = peak(50000);  // 0.1 and 5 MB in, 0.5 and 25 MB out
+  EXPECT_LT(large - small, 4096);
 }
 
 TEST(CliFilter, RecordsAndReport) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ostream>
+#include <sstream>
 #include <string>
 
 namespace odobench::testing {
@@ -51,14 +53,18 @@ struct CircleRun {
 };
 
 // `rows` rows of the named layout with a little of everything in them, the rotation per step in degrees.
-inline std::string plain_run(int rows) {
-  std::string text = "time_s,enc1_m,enc2_m,enc3_m,enc4_m,ax_m_s2,ay_m_s2,yaw_step_deg\n";
+inline void write_plain_run(std::ostream& out, int rows) {
+  out << "time_s,enc1_m,enc2_m,enc3_m,enc4_m,ax_m_s2,ay_m_s2,yaw_step_deg\n";
   for (int n = 0; n < rows; ++n) {
     const double wave = std::sin(0.7 * n);
-    text += fmt::format("{:.2f},{},{},{},{},{},{},{}\n", 0.1 * n, 0.05 + 0.001 * wave, 0.05 - 0.002 * wave,
-                        0.049 + 0.001 * n, 0.051, 0.1 * wave, -0.05 * wave, 0.5 + 0.3 * wave);
+    out << fmt::format("{:.2f},{},{},{},{},{},{},{}\n", 0.1 * n, 0.05 + 0.001 * wave, 0.05 - 0.002 * wave,
+                       0.049 + 0.001 * (n % 100), 0.051, 0.1 * wave, -0.05 * wave, 0.5 + 0.3 * wave);
   }
-  return text;
+}
+inline std::string plain_run(int rows) {
+  std::ostringstream text;
+  write_plain_run(text, rows);
+  return text.str();
 }
 
 }  // namespace odobench::testing
