@@ -17,33 +17,35 @@ int power_of_three(int n) {
   return value;
 }
 
-// -g't of all t in {-1, 0, 1}^n, the first variable being the fastest; `out` has room for 3^n.
-void linear_costs(const double* g, int n, double* out) {
+// g't of all t in {-1, 0, 1}^n, the first variable being the fastest; `out` has room for 3^n.
+void linear_terms(const double* g, int n, double* out) {
   out[0] = 0;
   int size = 1;
   for (int i = 0; i < n; ++i, size *= 3)
     for (int k = 0; k < size; ++k) {
       const double base = out[k];
-      out[k] = base + g[i];
+      out[k] = base - g[i];
       out[k + size] = base;
-      out[k + 2 * size] = base - g[i];
+      out[k + 2 * size] = base + g[i];
     }
 }
 
-// One block of at most kLargestTable variables: t'Qt of every t in a table of rows (the later variables) and columns
-// (the first ones), to which a linear term adds one number per row and one per column.
+// One block of at most kLargestTable variables: t'Qt in a table of rows (the later variables) and columns (the first
+// ones), to which a linear term adds one number per row and one per column. t and -t share an entry, whose value is the
+// better of their costs, t'Qt - |g't|: the upper half of the rows is enough, beginning with the row of zeros.
 class TableBlock {
  public:
   explicit TableBlock(const Eigen::MatrixXd& q)
       : n_(static_cast<int>(q.rows())),
         first_(std::min(n_, kColumnDigits)),
-        rows_(power_of_three(n_ - first_)),
+        all_rows_(power_of_three(n_ - first_)),
+        rows_(all_rows_ / 2 + 1),
         columns_(power_of_three(first_)),
         padded_(ternary::padded(columns_)),
         q_(q),
         table_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(padded_),
                std::numeric_limits<double>::infinity()),
-        row_(static_cast<std::size_t>(rows_)),
+        row_(static_cast<std::size_t>(all_rows_)),
         column_(static_cast<std::size_t>(padded_), 0.0) {
     Eigen::VectorXd t(n_);
     for (int r = 0; r < rows_; ++r)
@@ -66,18 +68,22 @@ class TableBlock {
       for (int f = 0; f < free; ++f) t[free_[f]] = best_choice_[f];
       evaluations += power_of_three(free);
     } else {
-      linear_costs(g, first_, column_.data());
-      linear_costs(g + first_, n_ - first_, row_.data());
-      const int row = kernel.smallest(table_.data(), row_.data(), rows_, column_.data(), padded_).row;
+      linear_terms(g, first_, column_.data());
+      linear_terms(g + first_, n_ - first_, row_.data());
+      const double* const upper_half = row_.data() + all_rows_ / 2;
+      const int row = kernel.smallest(table_.data(), upper_half, rows_, column_.data(), padded_);
       const double* const entries =
           table_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(padded_);
+      const auto value = [&](int c) {
+        return entries[c] - std::abs(column_[static_cast<std::size_t>(c)] + upper_half[row]);
+      };
       int column = 0;
       for (int c = 1; c < columns_; ++c)
-        if (entries[c] + column_[static_cast<std::size_t>(c)] <
-            entries[column] + column_[static_cast<std::size_t>(column)])
-          column = c;
+        if (value(c) < value(column)) column = c;
       decode(row, column, t);
-      evaluations += static_cast<std::int64_t>(rows_) * columns_;
+      if (column_[static_cast<std::size_t>(column)] + upper_half[row] < 0)
+        for (int i = 0; i < n_; ++i) t[i] = t[i] == 0 ? 0 : -t[i];
+      evaluations += static_cast<std::int64_t>(all_rows_) * columns_;
     }
     double cost = 0;
     for (int i = 0; i < n_; ++i) {
@@ -89,7 +95,9 @@ class TableBlock {
   }
 
  private:
+  // `row` counts within the upper half.
   void decode(int row, int column, double* t) const {
+    row += all_rows_ / 2;
     for (int i = 0; i < first_; ++i, column /= 3) t[i] = column % 3 - 1;
     for (int i = first_; i < n_; ++i, row /= 3) t[i] = row % 3 - 1;
   }
@@ -142,7 +150,7 @@ class TableBlock {
     }
   }
 
-  int n_, first_, rows_, columns_, padded_;
+  int n_, first_, all_rows_, rows_, columns_, padded_;
   Eigen::MatrixXd q_;
   std::vector<double> table_, row_, column_;
   int free_[kLargestTable] = {};

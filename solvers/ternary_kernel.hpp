@@ -23,19 +23,13 @@ struct GreedyBlock {
   int moves;
 };
 
-// Smallest entry of a padded table.
-struct Smallest {
-  double value;
-  int row;
-};
-
 struct Kernel {
   const char* name;
   // Runs every block to its local optimum.
   void (*greedy)(GreedyBlock* blocks, int count);
-  // min over rows i and columns j of (table[i * columns + j] + column[j]) + row[i]; the first row among equals.
-  // `columns` is a multiple of kPad.
-  Smallest (*smallest)(const double* table, const double* row, int rows, const double* column, int columns);
+  // The row i, the first among equals, of the smallest table[i * columns + j] - |column[j] + row[i]|; `columns` is
+  // a multiple of kPad.
+  int (*smallest)(const double* table, const double* row, int rows, const double* column, int columns);
 };
 
 // Every kernel that this processor can run, the widest first; never empty.

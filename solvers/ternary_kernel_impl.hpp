@@ -83,18 +83,53 @@ void greedy(GreedyBlock* blocks, int count) {
 }
 
 template <int W>
-Smallest smallest(const double* table, const double* row, int rows, const double* column, int columns) {
-  Smallest best{0, -1};
-  for (int i = 0; i < rows; ++i, table += columns) {
-    Pack<W> low = load<W>(table) + load<W>(column);
-    for (int j = W; j < columns; j += W) {
-      const Pack<W> value = load<W>(table + j) + load<W>(column + j);
-      low = value < low ? value : low;
+inline Pack<W> lower(const Pack<W>& a, const Pack<W>& b) {
+  return a < b ? a : b;
+}
+template <int W>
+inline Pack<W> magnitude(const Pack<W>& v) {
+  return (Pack<W>)((Mask<W>)v & 0x7fffffffffffffffLL);
+}
+
+// The smallest of table[j] - |column[j] + row| in each of R rows, R chains of comparisons beside each other.
+template <int W, int R>
+inline void smallest_of_rows(const double* table, const double* row, const double* column, int columns,
+                             double* out) {
+  Pack<W> low[R];
+  for (int r = 0; r < R; ++r)
+    low[r] = load<W>(table + static_cast<long>(r) * columns) - magnitude<W>(load<W>(column) + row[r]);
+  for (int j = W; j < columns; j += W) {
+    const Pack<W> linear = load<W>(column + j);
+    for (int r = 0; r < R; ++r)
+      low[r] = lower<W>(load<W>(table + static_cast<long>(r) * columns + j) - magnitude<W>(linear + row[r]),
+                        low[r]);
+  }
+  for (int r = 0; r < R; ++r) {
+    double lanes[W];
+    store<W>(lanes, low[r]);
+    for (int width = W / 2; width > 0; width /= 2)
+      for (int l = 0; l < width; ++l) lanes[l] = lanes[l + width] < lanes[l] ? lanes[l + width] : lanes[l];
+    out[r] = lanes[0];
+  }
+}
+
+template <int W>
+int smallest(const double* table, const double* row, int rows, const double* column, int columns) {
+  constexpr int kTogether = 4;
+  int best = -1;
+  double lowest = 0, low[kTogether];
+  for (int i = 0; i < rows;) {
+    const int count = rows - i >= kTogether ? kTogether : 1;
+    const double* const from = table + static_cast<long>(i) * columns;
+    if (count == kTogether)
+      smallest_of_rows<W, kTogether>(from, row + i, column, columns, low);
+    else
+      smallest_of_rows<W, 1>(from, row + i, column, columns, low);
+    for (int r = 0; r < count; ++r, ++i) {
+      if (best >= 0 && !(low[r] < lowest)) continue;
+      lowest = low[r];
+      best = i;
     }
-    double value = low[0];
-    for (int l = 1; l < W; ++l) value = low[l] < value ? low[l] : value;
-    value += row[i];
-    if (best.row < 0 || value < best.value) best = {value, i};
   }
   return best;
 }
