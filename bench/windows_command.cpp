@@ -57,7 +57,7 @@ LoadedWindow load(const EntropyWindow& window) {
   const BlockQuadratic& cost = *w.loaded.problem.block_quadratic();
   EntropyState state;
   w.zero = value_at(window, w.loaded.problem.start(), state);
-  w.exact = optimum(window, cost, *ternary_exact(cost.blocks));
+  w.exact = optimum(window, cost, *ternary_branch_and_bound(cost.blocks));
   w.relaxed = optimum(window, cost, *box_relaxation(cost.blocks));
   return w;
 }

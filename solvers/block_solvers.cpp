@@ -24,14 +24,14 @@ Outcome ExactSearch::minimise(Run& run) const {
   const std::unique_ptr<LatticePoint> start = run.lattice_point();
   run.cost(run.box().to_unit(start->x()));  // something to show if it is interrupted
   const BlockQuadratic& quadratic = *run.problem().block_quadratic();
-  const auto search = ternary_exact(quadratic.blocks, [&run] { return run.stop(); });
+  const auto search = ternary_branch_and_bound(quadratic.blocks, [&run] { return run.stop(); });
   const Vector g = quadratic.stacked_g();
   Vector t(g.size());
   const SearchResult found = search->minimise({g.data(), static_cast<std::size_t>(g.size())},
                                               {t.data(), static_cast<std::size_t>(t.size())});
   const bool proven = !run.stop();
   run.iteration();
-  run.cost(run.box().to_unit(quadratic.unstack(t)));
+  run.lattice_visit(*run.problem().lattice_point(quadratic.unstack(t)));
   if (!proven) return {};
   return {Termination::Converged, fmt::format("no lattice point is lower, {} candidates", found.evaluations)};
 }

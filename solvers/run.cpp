@@ -212,7 +212,7 @@ double Run::lattice_change(const LatticePoint& point, Eigen::Index i, double val
 }
 
 void Run::lattice_visit(const LatticePoint& point) {
-  if (!stop()) accept(point.cost(), point.x(), box_.to_unit(point.x()));
+  accept(point.cost(), point.x(), box_.to_unit(point.x()));
 }
 
 void Run::iteration() {

@@ -74,7 +74,8 @@ class Run {
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs);
 
   // A walk on the problem's lattice, in parameter units. lattice_point gives the admissible point nearest to start();
-  // lattice_change is +infinity once stop() holds; lattice_visit takes the point into account for the best.
+  // lattice_change is +infinity once stop() holds; lattice_visit takes the point, whose cost
+  // is known by walking there, into account for the best: also after a stop.
   std::unique_ptr<LatticePoint> lattice_point();
   double lattice_change(const LatticePoint& point, Eigen::Index i, double value);
   void lattice_visit(const LatticePoint& point);

@@ -161,7 +161,7 @@ class TableBlock {
 
 class TernaryExact final : public BlockSearch {
  public:
-  TernaryExact(const std::vector<QuadraticBlock>& blocks, std::function<bool()> stop,
+  TernaryExact(const std::vector<QuadraticBlock>& blocks, int largest_table, std::function<bool()> stop,
                const ternary::Kernel& kernel)
       : stop_(std::move(stop)), kernel_(kernel) {
     check_blocks(blocks);
@@ -171,8 +171,8 @@ class TernaryExact final : public BlockSearch {
       for (std::size_t b = 0; b < parts_.size() && part.twin < 0; ++b)
         if (blocks[b].q == block.q) part.twin = parts_[b].twin < 0 ? static_cast<int>(b) : parts_[b].twin;
       part.size = block.q.rows();
-      if (part.twin < 0 && part.size <= kLargestTable) part.table = std::make_unique<TableBlock>(block.q);
-      if (part.twin < 0 && part.size > kLargestTable)
+      if (part.twin < 0 && part.size <= largest_table) part.table = std::make_unique<TableBlock>(block.q);
+      if (part.twin < 0 && part.size > largest_table)
         part.tree = std::make_unique<TernaryBranchAndBound>(block.q);
       parts_.push_back(std::move(part));
     }
@@ -219,7 +219,12 @@ class TernaryExact final : public BlockSearch {
 
 std::unique_ptr<BlockSearch> ternary_exact(const std::vector<QuadraticBlock>& blocks,
                                            std::function<bool()> stop, const ternary::Kernel& kernel) {
-  return std::make_unique<TernaryExact>(blocks, std::move(stop), kernel);
+  return std::make_unique<TernaryExact>(blocks, kLargestTable, std::move(stop), kernel);
+}
+
+std::unique_ptr<BlockSearch> ternary_branch_and_bound(const std::vector<QuadraticBlock>& blocks,
+                                                      std::function<bool()> stop) {
+  return std::make_unique<TernaryExact>(blocks, 0, std::move(stop), ternary::available().front());
 }
 
 }  // namespace odobench

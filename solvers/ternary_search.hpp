@@ -17,12 +17,17 @@ namespace odobench {
 std::unique_ptr<BlockSearch> ternary_greedy(const std::vector<QuadraticBlock>& blocks,
                                             const ternary::Kernel& kernel = ternary::available().front());
 
-// The lattice optimum. Variables that no choice of the others can turn are fixed first; what is left of a block of at
-// most 10 is enumerated with tables made once, of a larger one by branch and bound, which polls `stop` now and then:
-// when that holds the answer is the best found so far. `evaluations` counts candidates, or nodes.
+// The lattice optimum, for many linear terms. Variables that no choice of the others can turn are fixed first; what is
+// left of a block of at most 10 is enumerated with tables made once (a few ms), of a larger one by branch and bound, which
+// polls `stop` now and then: when that holds the answer is the best found so far, never worse than the greedy one.
+// `evaluations` counts candidates, or nodes.
 std::unique_ptr<BlockSearch> ternary_exact(const std::vector<QuadraticBlock>& blocks,
                                            std::function<bool()> stop = {},
                                            const ternary::Kernel& kernel = ternary::available().front());
+
+// The same by branch and bound alone, best for a single linear term.
+std::unique_ptr<BlockSearch> ternary_branch_and_bound(const std::vector<QuadraticBlock>& blocks,
+                                                      std::function<bool()> stop = {});
 
 // The optimum of the relaxation [-1, 1]^n.
 std::unique_ptr<BlockSearch> box_relaxation(const std::vector<QuadraticBlock>& blocks);

@@ -269,6 +269,7 @@ TEST(TernaryExact, BranchAndBoundAgreesWithBruteForce) {
     QuadraticBlock block{{}, q, g};
     for (int i = 0; i < n; ++i) block.index.push_back(i);
     const Solved exact = solve_blocks({0, {block}}, *ternary_exact({block}));
+    EXPECT_EQ(solve_blocks({0, {block}}, *ternary_branch_and_bound({block})).t, exact.t);
 
     // Brute force keeps Q t and the cost up to date as single entries change.
     Vector t = Vector::Constant(n, -1), qt = q * t, best = t;
@@ -292,6 +293,23 @@ TEST(TernaryExact, BranchAndBoundAgreesWithBruteForce) {
     EXPECT_EQ(exact.t, best) << "seed " << seed;
     EXPECT_NEAR(exact.search.cost, lowest, 1e-9 * std::abs(lowest));
   }
+}
+
+// A search that is stopped at once still answers, and not worse than the greedy one.
+TEST(TernaryExact, StoppedBranchAndBoundKeepsItsIncumbent) {
+  const WindowProblem problem(testing::random_window(30, 2));
+  const BlockQuadratic& cost = problem.block_quadratic();
+  const double greedy = solve_blocks(cost, *ternary_greedy(cost.blocks)).hamiltonian;
+  const Solved stopped = solve_blocks(cost, *ternary_branch_and_bound(cost.blocks, [] { return true; }));
+  EXPECT_GE(stopped.hamiltonian, greedy - 1e-9 * std::abs(greedy));
+  EXPECT_LT(stopped.search.evaluations, 2000);
+
+  const Problem handle{WindowProblem(problem.window())};
+  SolveOptions options;
+  options.budget.max_seconds = 0.01;
+  const Result cut = solve(handle, {"exact", {}}, handle.start(), options);
+  EXPECT_EQ(cut.termination, Termination::TimeLimit) << cut.brief();
+  EXPECT_LE(cut.cost, -greedy * (1 + 1e-12)) << cut.brief();
 }
 
 // Equal gains: the smallest scan position wins, and standing still beats a change that gains nothing.

@@ -9,8 +9,10 @@
 #include <thread>
 
 #include "problems/classic/classic_problems.hpp"
+#include "problems/entropy/window_problem.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
+#include "tests/support/entropy_windows.hpp"
 
 namespace odobench {
 namespace {
@@ -317,6 +319,23 @@ std::vector<std::string> solver_names() {
   std::vector<std::string> names;
   for (const SolverEntry& entry : solver_registry()) names.push_back(entry.name);
   return names;
+}
+
+// A problem whose parameters have admissible levels: methods that know of them stay on them, all stay in the box.
+TEST_P(Conformance, RunsOnALattice) {
+  const Problem problem{WindowProblem(testing::random_window(5, 1))};
+  for (const std::int64_t evaluations : {1, 7, 300}) {
+    const Result a = run(problem, evaluations);
+    if (not_applicable(a)) return;
+    ASSERT_TRUE(a.usable()) << a.brief();
+    EXPECT_LE(a.counts.total(), evaluations) << a.brief();
+    EXPECT_LE(a.x.cwiseAbs().maxCoeff(), 1) << a.full();
+    EXPECT_EQ(a.cost, problem.cost(a.x)) << a.brief();
+    if (GetParam() == "coordinate" || GetParam() == "exact") {
+      EXPECT_EQ(a.x, a.x.array().round().matrix()) << a.full();
+    }
+    expect_same_bits(a, run(problem, evaluations));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Conformance, ::testing::ValuesIn(solver_names()), [](const auto& tested) {
