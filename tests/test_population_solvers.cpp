@@ -87,6 +87,10 @@ struct Requirement {
   int of_ten;
 };
 
+void PrintTo(const Requirement& r, std::ostream* out) {
+  *out << r.solver << " within " << r.gap << " after " << r.evaluations << " evaluations";
+}
+
 class Required : public ::testing::TestWithParam<Requirement> {};
 
 TEST_P(Required, OnTheValley) {
