@@ -169,7 +169,8 @@ class TernaryExact final : public BlockSearch {
       Part part;
       // Equal blocks share their table: x and y of a window do.
       for (std::size_t b = 0; b < parts_.size() && part.twin < 0; ++b)
-        if (blocks[b].q == block.q) part.twin = parts_[b].twin < 0 ? static_cast<int>(b) : parts_[b].twin;
+        if (blocks[b].q.rows() == block.q.rows() && blocks[b].q == block.q)
+          part.twin = parts_[b].twin < 0 ? static_cast<int>(b) : parts_[b].twin;
       part.size = block.q.rows();
       if (part.twin < 0 && part.size <= largest_table) part.table = std::make_unique<TableBlock>(block.q);
       if (part.twin < 0 && part.size > largest_table)
