@@ -80,10 +80,6 @@ const std::vector<Violation> kViolations = {
      "solvers/method.cpp:1: changes optimisation"},
 };
 
-void PrintTo(const Violation& v, std::ostream* out) {
-  *out << v.name;
-}
-
 class CheckScriptViolation : public ::testing::TestWithParam<Violation> {};
 
 TEST(CheckScript, PassesWithoutViolation) {
