@@ -8,6 +8,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "problems/fusion/consistency.hpp"
@@ -306,9 +307,6 @@ TEST(ExtendedFilter, IsAsGoodAsItSays) {
       drive.gyro = gyro;
       drive.camera_every = every;
       const Consistency c = simulate(drive);
-      RecordProperty("nees", std::to_string(c.nees));
-      std::printf("kind %d gyro %d camera every %d: ANEES %.3f ANIS %.3f inside %.3f\n",
-                  static_cast<int>(kind), gyro, every, c.nees, c.nis, c.nees_inside);
       EXPECT_NEAR(c.nees, 3, 0.12);
       EXPECT_NEAR(c.nis, 3, 0.05);
       EXPECT_GE(c.nees_inside, 0.88);
