@@ -7,6 +7,8 @@
 
 #include "bench/discretise_command.hpp"
 #include "bench/exit_code.hpp"
+#include "bench/fuse_command.hpp"
+#include "bench/tune_command.hpp"
 
 namespace odobench {
 
@@ -18,6 +20,8 @@ struct Verb {
 
 struct FusionArguments {
   DiscretiseOptions discretise;
+  FuseOptions fuse;
+  TuneOptions tune;
 };
 
 // `arguments` must outlive the verbs.

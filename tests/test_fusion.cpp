@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -195,6 +196,64 @@ TEST(Fusion, SmoothingAgreesAtTheEndAndIsSharperBefore) {
       EXPECT_LE(track_errors(r, result.smoothed, {}).rmse_position,
                 0.7 * track_errors(r, result.track, {}).rmse_position);
     }
+}
+
+TEST(Fusion, SmoothingEqualsBatchLeastSquares) {
+  // Straight ahead with a known heading: x is a random walk about the odometry, a linear problem.
+  constexpr Eigen::Index kSamples = 120;
+  constexpr double kSigmaV = 0.02, kSigmaZ = 0.003, kSigma0 = 0.01;
+  Recording r;
+  r.id = "straight";
+  SensorStream camera{"camera", SensorKind::Pose, kSigmaZ, 1.0, 0, 0, {}};
+  for (Eigen::Index k = 0; k < kSamples; ++k) {
+    r.time_us.push_back(k * 16'000 + (k % 3) * 1'000);
+    for (std::size_t i = 0; i < kWheelCount; ++i) {
+      r.steering[i].push_back(0);
+      r.wheel_speed[i].push_back(2);
+    }
+    r.x.push_back(0);
+    r.y.push_back(0);
+    r.theta.push_back(0);
+    if (k % 10 == 9)
+      camera.data.push_back(
+          {r.time_us.back(), r.time_us.back(), {0.05 * std::sin(1.0 * static_cast<double>(k)), 0, 0}});
+  }
+  Matrix information = Matrix::Zero(kSamples, kSamples);
+  Vector right = Vector::Zero(kSamples);
+  information(0, 0) = 1 / (kSigma0 * kSigma0);
+  for (Eigen::Index k = 0; k + 1 < kSamples; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double dt = static_cast<double>(r.time_us[i + 1] - r.time_us[i]) * 1e-6;
+    const double weight = 1 / (dt * dt * kSigmaV * kSigmaV), step = dt * 2 * 0.0254;
+    information(k, k) += weight;
+    information(k + 1, k + 1) += weight;
+    information(k, k + 1) -= weight;
+    information(k + 1, k) -= weight;
+    right[k] -= weight * step;
+    right[k + 1] += weight * step;
+  }
+  for (const Measurement& m : camera.data) {
+    const auto k = std::lower_bound(r.time_us.begin(), r.time_us.end(), m.time_us) - r.time_us.begin();
+    information(k, k) += 1 / (kSigmaZ * kSigmaZ);
+    right[k] += m.value[0] / (kSigmaZ * kSigmaZ);
+  }
+  const Matrix covariance = information.inverse();
+  const Vector batch = covariance * right;
+  for (const FilterKind kind : {FilterKind::Extended, FilterKind::Unscented}) {
+    FusionOptions options;
+    options.filter.kind = kind;
+    options.smooth = true;
+    options.sigma_velocity = kSigmaV;
+    options.sigma_yaw_rate = 1e-9;
+    options.initial_position = kSigma0;
+    options.initial_heading = 1e-9;
+    const FusionResult result = fuse(r, nominal(), std::vector{camera}, options);
+    for (Eigen::Index k = 0; k < kSamples; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      EXPECT_NEAR(result.smoothed.x[i], batch[k], 1e-9) << k;
+      EXPECT_NEAR(result.smoothed_factors[i].row(0).squaredNorm() / covariance(k, k), 1, 1e-6) << k;
+    }
+  }
 }
 
 TEST(Fusion, LearnsScaleAndBias) {

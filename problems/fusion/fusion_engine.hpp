@@ -202,6 +202,7 @@ class FusionEngine {
     if (from >= event.time + static_cast<std::int64_t>(sensor.hold_s * 1e6)) return false;
     reading = filter_.model().yaw_rate(filter_.state(), twists_[k].omega, sensor.data[event.index].value[0],
                                        sensor.sigma_rate * std::sqrt(std::max(1.0, sensor.hold_s / dt)));
+    reading.touches_state = options_.gyro_bias.has_value();  // a bias without variance shares nothing
     if (fresh_gyro_) {
       fresh_gyro_ = false;
       double variance =

@@ -54,6 +54,28 @@ struct UnscentedOptions {
   double kappa = 0;
 };
 
+// n + lambda, the centre's weights, the weight of the others, for n dimensions. Throws std::invalid_argument when
+// n + lambda is not positive or the centre's covariance weight is negative.
+struct SigmaWeights {
+  double spread = 0, mean0 = 0, covariance0 = 0, other = 0;
+};
+inline SigmaWeights sigma_weights(const UnscentedOptions& o, Eigen::Index n) {
+  const auto size = static_cast<double>(n);
+  SigmaWeights w;
+  w.spread = o.alpha * o.alpha * (size + o.kappa);
+  if (!(w.spread > 0))
+    throw std::invalid_argument("sigma points: alpha^2 (n + kappa) = " + std::to_string(w.spread) +
+                                ", expected > 0");
+  w.mean0 = (w.spread - size) / w.spread;
+  w.covariance0 = w.mean0 + 1 - o.alpha * o.alpha + o.beta;
+  w.other = 0.5 / w.spread;
+  if (!(w.covariance0 >= 0))
+    throw std::invalid_argument("sigma points: the centre's covariance weight is " +
+                                std::to_string(w.covariance0) +
+                                ", expected >= 0 (a larger alpha, beta or kappa)");
+  return w;
+}
+
 struct FilterOptions {
   FilterKind kind = FilterKind::Extended;
   UnscentedOptions unscented;
@@ -177,11 +199,6 @@ class KalmanFilter {
                                         const Eigen::Matrix<double, S::kSize, S::kSize>& lr, double gate);
   template <int Z>
   static void measure_innovation(Innovation<Z>& out, double gate);
-  // lambda + n and the centre's weights for n dimensions.
-  struct Weights {
-    double spread, mean0, covariance0, other;
-  };
-  Weights weights(Eigen::Index n) const;
   void require_finite(const char* where) const;
 
   M model_;
@@ -199,26 +216,7 @@ KalmanFilter<M>::KalmanFilter(M model, const FilterOptions& options, const State
                                 " rows as there are states");
   if (!x.allFinite()) throw std::invalid_argument("initial state has an entry that is not finite");
   s_ = covariance_factor("initial covariance", p);
-  if (options_.kind == FilterKind::Unscented) (void)weights(x.size());
-}
-
-template <class M>
-typename KalmanFilter<M>::Weights KalmanFilter<M>::weights(Eigen::Index n) const {
-  const UnscentedOptions& o = options_.unscented;
-  const auto size = static_cast<double>(n);
-  Weights w{};
-  w.spread = o.alpha * o.alpha * (size + o.kappa);
-  if (!(w.spread > 0))
-    throw std::invalid_argument("sigma points: alpha^2 (n + kappa) = " + std::to_string(w.spread) +
-                                ", expected > 0");
-  w.mean0 = (w.spread - size) / w.spread;
-  w.covariance0 = w.mean0 + 1 - o.alpha * o.alpha + o.beta;
-  w.other = 0.5 / w.spread;
-  if (!(w.covariance0 >= 0))
-    throw std::invalid_argument("sigma points: the centre's covariance weight is " +
-                                std::to_string(w.covariance0) +
-                                ", expected >= 0 (a larger alpha, beta or kappa)");
-  return w;
+  if (options_.kind == FilterKind::Unscented) (void)sigma_weights(options_.unscented, x.size());
 }
 
 template <class M>
@@ -353,7 +351,7 @@ template <class M>
 void KalmanFilter<M>::unscented_step(const Input& u, const Noise& w, const Joint& l, double dt,
                                      PredictionRecord* record) {
   const Eigen::Index n = x_.size(), p = w.size(), size = n + p;
-  const Weights q = weights(size);
+  const SigmaWeights q = sigma_weights(options_.unscented, size);
   const double c = std::sqrt(q.spread);
   // Deviations from the moved centre, so that angles never meet their jump.
   Eigen::Matrix<double, kN, kPoints> points(n, 2 * size + 1);
@@ -422,7 +420,7 @@ Innovation<S::kSize> KalmanFilter<M>::unscented_update(const S& sensor,
   constexpr bool kFixed = kN != Eigen::Dynamic && kZ != Eigen::Dynamic;
   constexpr int kCount = kN == Eigen::Dynamic ? Eigen::Dynamic : 2 * kN + 1;
   const Eigen::Index n = x_.size(), m = z.size(), count = 2 * n + 1;
-  const Weights q = weights(n);
+  const SigmaWeights q = sigma_weights(options_.unscented, n);
   const double c = std::sqrt(q.spread), root = std::sqrt(q.other);
   using Value = Eigen::Matrix<double, kZ, 1>;
   const Value centre = sensor.measure(x_);
