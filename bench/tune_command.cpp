@@ -54,7 +54,8 @@ Column column(const std::string& id, const std::string& name, const std::string&
   return c;
 }
 
-Table sigma_table(const Problem& problem, const std::vector<Setting>& settings) {
+Table sigma_table(const Problem& problem, const std::vector<Setting>& settings,
+                  const std::vector<std::string>& remarks) {
   Table table{"sigmas",
               "Standard deviations that the filter believes",
               {column("parameter", "parameter", "", true)},
@@ -68,6 +69,7 @@ Table sigma_table(const Problem& problem, const std::vector<Setting>& settings) 
       table.rows.back().push_back(significant_cell(std::pow(10.0, s.x[i]), 4));
   }
   table.notes.push_back("Position in m, heading in rad, velocity in m/s, yaw rate in rad/s.");
+  table.notes.insert(table.notes.end(), remarks.begin(), remarks.end());
   return table;
 }
 
@@ -112,6 +114,22 @@ void write_sensors(const TuneOptions& options, const FusionOptions& fusion,
     filter["sigma_heading"] = s.sigma_heading;
   }
   write_file(options.out, root.dump(2) + "\n");
+}
+
+// A sigma that the cost does not depend on (the wheels' velocity where only headings are measured) ends anywhere: it goes
+// back to the given one. Returns the names.
+std::string restore_flat(const FusionTuningProblem& model, const Vector& given, double cost, Vector& x) {
+  constexpr double kFlat = 1e-7;
+  std::string names;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    Vector y = x;
+    y[i] = given[i];
+    if (y[i] == x[i] || model.cost(y) > cost * (1 + kFlat)) continue;
+    x = y;
+    const std::string& name = model.parameters()[static_cast<std::size_t>(i)].name;
+    names += (names.empty() ? "" : ", ") + name.substr(name.find(' ') + 1);
+  }
+  return names;
 }
 
 FilterChoice tuned_filter(const std::string& name) {
@@ -162,6 +180,7 @@ ExitCode tune_command(const TuneOptions& options) {
     return fuse_all(judge, sets[0].values, filter, changed, streams, 0);
   };
   std::vector<Setting> settings{{"given", problem.start(), model->cost(problem.start()), 1, "", {}}};
+  std::vector<std::string> remarks;
   const InterruptGuard guard;
   for (const SolverSpec& spec : solvers) {
     SolveOptions solve_options;
@@ -195,7 +214,7 @@ ExitCode tune_command(const TuneOptions& options) {
     model->apply(best->x, fusion, streams);
     write_sensors(options, fusion, streams);
   }
-  print_tables({sensor_table(sensors, seed, loaded.dataset_name()), sigma_table(problem, settings),
+  print_tables({sensor_table(sensors, seed, loaded.dataset_name()), sigma_table(problem, settings, remarks),
                 result_table(settings, s, options.objective)},
                format);
   return ExitCode::Success;

@@ -16,7 +16,8 @@
 //     static constexpr int kStates, kNoises;          (Eigen::Dynamic allowed, both together)
 //     using Input = ...;
 //     State move(x, w, u, dt) const;                  f, w (p) the process noise, of mean 0 and covariance Lq Lq'
-//     void linearise(x, w, u, dt, F, G) const;        df/dx (n x n), df/dw (n x p)
+//     State linearise(x, w, u, dt, F, G) const;       fills df/dx (n x n), df/dw (n x p), returns f: what both need is
+//                                                     computed once
 // and a sensor
 //     static constexpr int kSize;
 //     Value measure(x) const;  Matrix jacobian(x) const;      h (m), dh/dx (m x n)
@@ -24,121 +25,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "problems/fusion/covariance.hpp"
+#include "problems/fusion/filter_types.hpp"
 #include "problems/fusion/triangular.hpp"
 
 namespace odobench {
-
-inline constexpr double kPi = 3.14159265358979323846;
-
-// To (-pi, pi]; an angle inside keeps its bits.
-inline double wrapped_angle(double a) {
-  if (a > -kPi && a <= kPi) return a;
-  const double r = std::remainder(a, 2 * kPi);
-  return r <= -kPi ? kPi : r;
-}
-
-enum class FilterKind { Extended, Unscented };
-
-// Points at x +- sqrt(n + lambda) L_j with lambda = alpha^2 (n + kappa) - n; mean weights lambda/(n+lambda) and
-// 1/(2(n+lambda)), the centre's covariance weight is larger by 1 - alpha^2 + beta. A negative centre weight of the
-// covariance could make it indefinite and is refused.
-struct UnscentedOptions {
-  double alpha = 1;
-  double beta = 2;  // right for Gaussians to fourth order
-  double kappa = 0;
-};
-
-// n + lambda, the centre's weights, the weight of the others, for n dimensions. Throws std::invalid_argument when
-// n + lambda is not positive or the centre's covariance weight is negative.
-struct SigmaWeights {
-  double spread = 0, mean0 = 0, covariance0 = 0, other = 0;
-};
-inline SigmaWeights sigma_weights(const UnscentedOptions& o, Eigen::Index n) {
-  const auto size = static_cast<double>(n);
-  SigmaWeights w;
-  w.spread = o.alpha * o.alpha * (size + o.kappa);
-  if (!(w.spread > 0))
-    throw std::invalid_argument("sigma points: alpha^2 (n + kappa) = " + std::to_string(w.spread) +
-                                ", expected > 0");
-  w.mean0 = (w.spread - size) / w.spread;
-  w.covariance0 = w.mean0 + 1 - o.alpha * o.alpha + o.beta;
-  w.other = 0.5 / w.spread;
-  if (!(w.covariance0 >= 0))
-    throw std::invalid_argument("sigma points: the centre's covariance weight is " +
-                                std::to_string(w.covariance0) +
-                                ", expected >= 0 (a larger alpha, beta or kappa)");
-  return w;
-}
-
-struct FilterOptions {
-  FilterKind kind = FilterKind::Extended;
-  UnscentedOptions unscented;
-  // (4.7) of J. Vitko's thesis read to the letter: the innovation is z - h(x_n) with the state before the prediction.
-  // The estimate then leads by the last increment of the odometry. For comparison only.
-  bool literal_47 = false;
-};
-
-// z - h, its covariance Sy Sy', NIS = nu' (Sy Sy')^-1 nu, log det(Sy Sy').
-template <int Z>
-struct Innovation {
-  Eigen::Matrix<double, Z, 1> nu;
-  Eigen::Matrix<double, Z, Z> factor;
-  double nis = 0;
-  double log_det = 0;
-  bool accepted = true;
-};
-
-// A scalar measurement of the process: its value differs from what is expected at w = 0 by `innovation`, with
-// derivatives hx to the state and hw to the noise and standard deviation sigma. A gyro that corrects the yaw rate of a step.
-template <int N, int W>
-struct ProcessMeasurement {
-  Eigen::Matrix<double, 1, N> hx;
-  Eigen::Matrix<double, 1, W> hw;
-  double innovation = 0;
-  double sigma = 0;
-  bool touches_state = false;  // hx is not zero
-};
-
-// Deviations before and after a prediction, joined column by column: before before' = P, after after' = P of the next
-// instant, before after' = their covariance. What a smoother needs.
-struct PredictionRecord {
-  Vector x, x_next;
-  Matrix before, after;
-};
-
-// y of l y = b and of l' y = b, l lower triangular.
-template <int Z, int C>
-Eigen::Matrix<double, Z, C> forward_solved(const Eigen::Matrix<double, Z, Z>& l,
-                                           Eigen::Matrix<double, Z, C> b) {
-  for (Eigen::Index i = 0; i < b.rows(); ++i) {
-    const double d = 1 / l(i, i);
-    for (Eigen::Index c = 0; c < b.cols(); ++c) {
-      double sum = b(i, c);
-      for (Eigen::Index j = 0; j < i; ++j) sum -= l(i, j) * b(j, c);
-      b(i, c) = sum * d;
-    }
-  }
-  return b;
-}
-template <int Z, int C>
-Eigen::Matrix<double, Z, C> backward_solved(const Eigen::Matrix<double, Z, Z>& l,
-                                            Eigen::Matrix<double, Z, C> b) {
-  for (Eigen::Index i = b.rows(); i-- > 0;) {
-    const double d = 1 / l(i, i);
-    for (Eigen::Index c = 0; c < b.cols(); ++c) {
-      double sum = b(i, c);
-      for (Eigen::Index j = i + 1; j < b.rows(); ++j) sum -= l(j, i) * b(j, c);
-      b(i, c) = sum * d;
-    }
-  }
-  return b;
-}
 
 template <class M>
 class KalmanFilter {
@@ -173,7 +68,8 @@ class KalmanFilter {
                         PredictionRecord* record = nullptr);
 
   // lr factors the covariance of z (lower triangular). Above `gate` the estimate stays as it was and accepted is
-  // false. Throws std::runtime_error when the innovation has no positive definite covariance or is not finite.
+  // false. Throws std::runtime_error when the innovation has no positive definite covariance or is not finite,
+  // std::invalid_argument when sizes do not fit.
   template <class S>
   Innovation<S::kSize> update(const S& sensor, const Eigen::Matrix<double, S::kSize, 1>& z,
                               const Eigen::Matrix<double, S::kSize, S::kSize>& lr, double gate = kNoGate);
@@ -254,7 +150,7 @@ Innovation<1> KalmanFilter<M>::correct_noise(Noise& w, NoiseFactor& lq, const Pr
   const Noise k = lq * a / variance;
   w += k * m.innovation;
   Eigen::Matrix<double, kW, kWide> wide(lq.rows(), lq.cols() + 1);
-  wide.leftCols(lq.cols()) = lq - k * a.transpose();
+  wide.template leftCols<kW>(lq.cols()) = lq - k * a.transpose();
   wide.col(lq.cols()) = k * m.sigma;
   lq = lower_triangular<kW, kWide>(wide);
   return out;
@@ -266,8 +162,8 @@ Innovation<1> KalmanFilter<M>::correct_joint(Noise& w, Joint& l, const ProcessMe
   constexpr int kWide = kJoint == Eigen::Dynamic ? Eigen::Dynamic : kJoint + 1;
   const Eigen::Index n = x_.size();
   Eigen::Matrix<double, kJoint, 1> h(l.rows());
-  h.head(n) = m.hx.transpose();
-  h.tail(w.size()) = m.hw.transpose();
+  h.template head<kN>(n) = m.hx.transpose();
+  h.template tail<kW>(w.size()) = m.hw.transpose();
   const Eigen::Matrix<double, kJoint, 1> a = l.transpose() * h;
   const double variance = a.squaredNorm() + m.sigma * m.sigma;
   Innovation<1> out;
@@ -276,10 +172,10 @@ Innovation<1> KalmanFilter<M>::correct_joint(Noise& w, Joint& l, const ProcessMe
   measure_innovation<1>(out, gate);
   if (!out.accepted) return out;
   const Eigen::Matrix<double, kJoint, 1> k = l * a / variance;
-  x_ += k.head(n) * m.innovation;
-  w += k.tail(w.size()) * m.innovation;
+  x_ += k.template head<kN>(n) * m.innovation;
+  w += k.template tail<kW>(w.size()) * m.innovation;
   Eigen::Matrix<double, kJoint, kWide> wide(l.rows(), l.cols() + 1);
-  wide.leftCols(l.cols()) = l - k * a.transpose();
+  wide.template leftCols<kJoint>(l.cols()) = l - k * a.transpose();
   wide.col(l.cols()) = k * m.sigma;
   l = lower_triangular<kJoint, kWide>(wide);
   return out;
@@ -300,14 +196,14 @@ Innovation<1> KalmanFilter<M>::predict(const Input& u, const NoiseFactor& lq, do
   } else {
     const Eigen::Index n = x_.size();
     Joint l = Joint::Zero(n + lq.rows(), n + lq.rows());
-    l.topLeftCorner(n, n) = s_;
-    l.bottomRightCorner(lq.rows(), lq.rows()) = lq;
+    l.template topLeftCorner<kN, kN>(n, n) = s_;
+    l.template bottomRightCorner<kW, kW>(lq.rows(), lq.rows()) = lq;
     if (joint_measurement) {
       out = correct_joint(w, l, *measurement, gate);
     } else if (measurement != nullptr) {
       NoiseFactor corrected = lq;
       out = correct_noise(w, corrected, *measurement, gate);
-      l.bottomRightCorner(lq.rows(), lq.rows()) = corrected;
+      l.template bottomRightCorner<kW, kW>(lq.rows(), lq.rows()) = corrected;
     }
     if (record != nullptr) record->x = x_;
     if (options_.kind == FilterKind::Extended)
@@ -324,11 +220,11 @@ template <class M>
 void KalmanFilter<M>::extended_step(const Input& u, const Noise& w, const NoiseFactor& lq, double dt) {
   Square f(x_.size(), x_.size());
   NoiseMap g(x_.size(), w.size());
-  model_.linearise(x_, w, u, dt, f, g);
+  const State next = model_.linearise(x_, w, u, dt, f, g);
   Eigen::Matrix<double, kN, kJoint> wide(x_.size(), x_.size() + w.size());
-  wide.leftCols(x_.size()) = f * s_;
-  wide.rightCols(w.size()) = g * lq;
-  x_ = model_.move(x_, w, u, dt);
+  wide.template leftCols<kN>(x_.size()).noalias() = f * s_;
+  wide.template rightCols<kW>(w.size()).noalias() = g * lq;
+  x_ = next;
   s_ = lower_triangular<kN, kJoint>(wide);
 }
 
@@ -338,9 +234,10 @@ void KalmanFilter<M>::extended_step(const Input& u, const Noise& w, const Joint&
   const Eigen::Index n = x_.size();
   Square f(n, n);
   NoiseMap g(n, w.size());
-  model_.linearise(x_, w, u, dt, f, g);
-  const Eigen::Matrix<double, kN, kJoint> wide = f * l.topRows(n) + g * l.bottomRows(w.size());
-  x_ = model_.move(x_, w, u, dt);
+  const State next = model_.linearise(x_, w, u, dt, f, g);
+  const Eigen::Matrix<double, kN, kJoint> wide =
+      f * l.template topRows<kN>(n) + g * l.template bottomRows<kW>(w.size());
+  x_ = next;
   s_ = lower_triangular<kN, kJoint>(wide);
   if (record == nullptr) return;
   record->before = l.topRows(n);
@@ -359,8 +256,8 @@ void KalmanFilter<M>::unscented_step(const Input& u, const Noise& w, const Joint
   State mean = State::Zero(n);
   points.col(0).setZero();
   for (Eigen::Index j = 0; j < size; ++j) {
-    const State dx = c * l.col(j).head(n);
-    const Noise dw = c * l.col(j).tail(p);
+    const State dx = c * l.col(j).template head<kN>(n);
+    const Noise dw = c * l.col(j).template tail<kW>(p);
     points.col(1 + j) = model_.move(x_ + dx, w + dw, u, dt) - centre;
     points.col(1 + size + j) = model_.move(x_ - dx, w - dw, u, dt) - centre;
     mean += q.other * (points.col(1 + j) + points.col(1 + size + j));
@@ -385,6 +282,13 @@ Innovation<S::kSize> KalmanFilter<M>::update(const S& sensor, const Eigen::Matri
                                              double gate) {
   constexpr int kZ = S::kSize;
   constexpr int kWide = kN == Eigen::Dynamic || kZ == Eigen::Dynamic ? Eigen::Dynamic : kN + kZ;
+  if constexpr (kZ == Eigen::Dynamic) {
+    const Eigen::Index size = sensor.measure(x_).size();
+    if (z.size() != size || lr.rows() != size || lr.cols() != size)
+      throw std::invalid_argument("measurement of " + std::to_string(z.size()) + " values with a factor of " +
+                                  std::to_string(lr.rows()) + " x " + std::to_string(lr.cols()) +
+                                  ", expected those of the sensor: " + std::to_string(size));
+  }
   if (options_.kind == FilterKind::Unscented) return unscented_update(sensor, z, lr, gate);
   const Eigen::Index n = x_.size(), m = z.size();
   Innovation<kZ> out;
@@ -392,8 +296,8 @@ Innovation<S::kSize> KalmanFilter<M>::update(const S& sensor, const Eigen::Matri
   sensor.wrap(out.nu);
   const Eigen::Matrix<double, kZ, kN> a = sensor.jacobian(x_) * s_;
   Eigen::Matrix<double, kZ, kWide> innovation(m, n + m);
-  innovation.leftCols(n) = a;
-  innovation.rightCols(m) = lr;
+  innovation.template leftCols<kN>(n) = a;
+  innovation.template rightCols<kZ>(m) = lr;
   out.factor = lower_triangular<kZ, kWide>(innovation);
   measure_innovation<kZ>(out, gate);
   if (!out.accepted) return out;
@@ -403,8 +307,8 @@ Innovation<S::kSize> KalmanFilter<M>::update(const S& sensor, const Eigen::Matri
   const Eigen::Matrix<double, kN, kZ> k = kt.transpose();
   x_ += k * out.nu;
   Eigen::Matrix<double, kN, kWide> wide(n, n + m);
-  wide.leftCols(n) = s_ - k * a;
-  wide.rightCols(m) = k * lr;
+  wide.template leftCols<kN>(n) = s_ - k * a;
+  wide.template rightCols<kZ>(m) = k * lr;
   s_ = lower_triangular<kN, kWide>(wide);
   require_finite("update");
   return out;
@@ -446,8 +350,8 @@ Innovation<S::kSize> KalmanFilter<M>::unscented_update(const S& sensor,
   sensor.wrap(out.nu);
   constexpr int kWideZ = kFixed ? 2 * kN + 1 + kZ : Eigen::Dynamic;
   Eigen::Matrix<double, kZ, kWideZ> innovation(m, count + m);
-  innovation.leftCols(count) = dz;
-  innovation.rightCols(m) = lr;
+  innovation.template leftCols<kCount>(count) = dz;
+  innovation.template rightCols<kZ>(m) = lr;
   out.factor = lower_triangular<kZ, kWideZ>(innovation);
   measure_innovation<kZ>(out, gate);
   if (!out.accepted) return out;
@@ -456,8 +360,8 @@ Innovation<S::kSize> KalmanFilter<M>::unscented_update(const S& sensor,
   const Eigen::Matrix<double, kN, kZ> k = kt.transpose();
   x_ += k * out.nu;
   Eigen::Matrix<double, kN, kWideZ> wide(n, count + m);
-  wide.leftCols(count) = dx - k * dz;
-  wide.rightCols(m) = k * lr;
+  wide.template leftCols<kCount>(count) = dx - k * dz;
+  wide.template rightCols<kZ>(m) = k * lr;
   s_ = lower_triangular<kN, kWideZ>(wide);
   require_finite("update");
   return out;

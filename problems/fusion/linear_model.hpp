@@ -18,14 +18,22 @@ struct LinearModel {
   using Input = Vector;
   Matrix f, psi;
 
+  // Throws std::invalid_argument when a size does not fit.
   Vector move(const Vector& x, const Vector& w, const Vector& u, double) const {
+    if (f.rows() != x.size() || f.cols() != x.size() || w.size() != x.size() || u.size() != psi.cols() ||
+        (u.size() > 0 && psi.rows() != x.size()))
+      throw std::invalid_argument(fmt::format(
+          "linear model: F {} x {}, Psi {} x {}, {} states, noise of {}, {} inputs do not fit together",
+          f.rows(), f.cols(), psi.rows(), psi.cols(), x.size(), w.size(), u.size()));
     Vector next = f * x + w;
     if (u.size() > 0) next += psi * u;
     return next;
   }
-  void linearise(const Vector& x, const Vector&, const Vector&, double, Matrix& df, Matrix& dg) const {
+  Vector linearise(const Vector& x, const Vector& w, const Vector& u, double dt, Matrix& df,
+                   Matrix& dg) const {
     df = f;
     dg = Matrix::Identity(x.size(), x.size());
+    return move(x, w, u, dt);
   }
 };
 

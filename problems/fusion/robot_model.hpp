@@ -48,9 +48,10 @@ struct RobotModel {
     return next;
   }
 
-  void linearise(const State& x, const Noise& w, const Twist& u, double dt,
-                 Eigen::Matrix<double, kStates, kStates>& f,
-                 Eigen::Matrix<double, kStates, kNoises>& g) const {
+  // The derivatives, and what move() gives.
+  State linearise(const State& x, const Noise& w, const Twist& u, double dt,
+                  Eigen::Matrix<double, kStates, kStates>& f,
+                  Eigen::Matrix<double, kStates, kNoises>& g) const {
     const double c = std::cos(x[2]), s = std::sin(x[2]);
     const double vx = scale(x) * u.vx + w[0], vy = scale(x) * u.vy + w[1];
     f.setIdentity();
@@ -67,6 +68,13 @@ struct RobotModel {
       f(0, kScale) = dt * (c * u.vx - s * u.vy);
       f(1, kScale) = dt * (s * u.vx + c * u.vy);
     }
+    State next = x;
+    next[0] += f(1, 2);
+    next[1] -= f(0, 2);
+    next[2] += dt * (u.omega + w[2]);
+    if constexpr (HasBias) next[kBias] += w[kBias];
+    if constexpr (HasScale) next[kScale] += w[kScale];
+    return next;
   }
 
   // A gyro that reads omega + b + noise while the wheels say `omega`.
