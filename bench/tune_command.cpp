@@ -192,8 +192,12 @@ ExitCode tune_command(const TuneOptions& options) {
       warn(fmt::format("{}: {}", spec.text(), result.message));
       continue;
     }
+    Vector x = result.x;
+    const std::string flat = restore_flat(*model, problem.start(), result.cost, x);
+    if (!flat.empty())
+      remarks.push_back(fmt::format("{}: the cost does not depend on {}, kept as given.", spec.text(), flat));
     settings.push_back({spec.text(),
-                        result.x,
+                        x,
                         result.cost,
                         static_cast<double>(result.counts.total()),
                         to_string(result.termination),

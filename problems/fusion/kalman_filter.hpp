@@ -163,7 +163,7 @@ Innovation<1> KalmanFilter<M>::correct_joint(Noise& w, Joint& l, const ProcessMe
   const Eigen::Index n = x_.size();
   Eigen::Matrix<double, kJoint, 1> h(l.rows());
   h.template head<kN>(n) = m.hx.transpose();
-  h.template tail<kW>(w.size()) = m.hw.transpose();
+  h.template segment<kW>(n, w.size()) = m.hw.transpose();
   const Eigen::Matrix<double, kJoint, 1> a = l.transpose() * h;
   const double variance = a.squaredNorm() + m.sigma * m.sigma;
   Innovation<1> out;
@@ -173,7 +173,7 @@ Innovation<1> KalmanFilter<M>::correct_joint(Noise& w, Joint& l, const ProcessMe
   if (!out.accepted) return out;
   const Eigen::Matrix<double, kJoint, 1> k = l * a / variance;
   x_ += k.template head<kN>(n) * m.innovation;
-  w += k.template tail<kW>(w.size()) * m.innovation;
+  w += k.template segment<kW>(n, w.size()) * m.innovation;
   Eigen::Matrix<double, kJoint, kWide> wide(l.rows(), l.cols() + 1);
   wide.template leftCols<kJoint>(l.cols()) = l - k * a.transpose();
   wide.col(l.cols()) = k * m.sigma;
@@ -257,7 +257,7 @@ void KalmanFilter<M>::unscented_step(const Input& u, const Noise& w, const Joint
   points.col(0).setZero();
   for (Eigen::Index j = 0; j < size; ++j) {
     const State dx = c * l.col(j).template head<kN>(n);
-    const Noise dw = c * l.col(j).template tail<kW>(p);
+    const Noise dw = c * l.col(j).template segment<kW>(n, p);
     points.col(1 + j) = model_.move(x_ + dx, w + dw, u, dt) - centre;
     points.col(1 + size + j) = model_.move(x_ - dx, w - dw, u, dt) - centre;
     mean += q.other * (points.col(1 + j) + points.col(1 + size + j));
