@@ -13,6 +13,7 @@
 #include "bench/evaluate_command.hpp"
 #include "bench/filter_arguments.hpp"
 #include "bench/filter_command.hpp"
+#include "bench/fusion_arguments.hpp"
 #include "bench/import_command.hpp"
 #include "bench/list_command.hpp"
 #include "bench/number_text.hpp"
@@ -60,11 +61,7 @@ struct Arguments {
   DemoOptions demo;
   CheckOptions check;
   ReportOptions report;
-};
-
-struct Verb {
-  CLI::App* app;
-  std::function<ExitCode()> execute;
+  FusionArguments fusion;
 };
 
 void add_format(CLI::App& app, std::string& format) {
@@ -183,6 +180,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   Arguments arguments;
   std::vector<Verb> verbs = add_writing_verbs(app, arguments);
   for (Verb& verb : add_reading_verbs(app, arguments)) verbs.push_back(std::move(verb));
+  for (Verb& verb : add_fusion_verbs(app, arguments.fusion)) verbs.push_back(std::move(verb));
   app.footer(kExamples);
   app.set_version_flag("--version", version_line);
   for (const Verb& verb : verbs) {

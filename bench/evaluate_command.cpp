@@ -138,14 +138,10 @@ std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std
                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near), list));
 }
 
-ExitCode evaluate_command(const EvaluateOptions& options) {
-  const Format format = parse_format(options.format);
-  if (!options.tracks.empty() && !options.overwrite && std::filesystem::exists(options.tracks))
-    throw std::invalid_argument(
-        fmt::format("--tracks={}: it exists; choose another name or give --overwrite", options.tracks));
-  const LoadedProblem loaded = load_calibration(options.data);
+std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
+                                              const std::vector<std::string>& lists) {
   std::vector<ParameterSet> sets;
-  for (const std::string& source : split_sources(options.parameters))
+  for (const std::string& source : split_sources(lists))
     for (ParameterSet& set : read_parameters(loaded, source)) {
       const auto same = [&](const ParameterSet& s) { return s.label == set.label; };
       if (std::any_of(sets.begin(), sets.end(), same))
@@ -153,10 +149,20 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
             fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
       sets.push_back(std::move(set));
     }
+  for (const ParameterSet& set : sets) warn_outside(loaded, set);
+  return sets;
+}
+
+ExitCode evaluate_command(const EvaluateOptions& options) {
+  const Format format = parse_format(options.format);
+  if (!options.tracks.empty() && !options.overwrite && std::filesystem::exists(options.tracks))
+    throw std::invalid_argument(
+        fmt::format("--tracks={}: it exists; choose another name or give --overwrite", options.tracks));
+  const LoadedProblem loaded = load_calibration(options.data);
+  const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);
   const RunContext context = run_context(1);
   std::vector<RunRecord> records;
   for (const ParameterSet& set : sets) {
-    warn_outside(loaded, set);
     records.push_back(evaluation_record(loaded, set.label, set.values, context));
   }
   if (!options.tracks.empty()) write_file(options.tracks, tracks_csv(*loaded.calibration, sets));

@@ -19,6 +19,11 @@ struct ParameterSet {
 // file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
 std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source);
 
+// Every entry of --parameters, comma lists taken apart; none: "nominal". Warns about parameters outside the box and
+// throws std::invalid_argument when two sets have one label.
+std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
+                                              const std::vector<std::string>& lists);
+
 // Parameters outside the box are evaluated with a warning on standard error.
 ExitCode evaluate_command(const EvaluateOptions& options);
 

@@ -1,0 +1,30 @@
+// The verbs about filters: `bench discretise`, `bench fuse`, `bench tune`.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <vector>
+
+#include "bench/discretise_command.hpp"
+#include "bench/exit_code.hpp"
+#include "bench/fuse_command.hpp"
+#include "bench/tune_command.hpp"
+
+namespace odobench {
+
+// A verb of the command line and what it does.
+struct Verb {
+  CLI::App* app;
+  std::function<ExitCode()> execute;
+};
+
+struct FusionArguments {
+  DiscretiseOptions discretise;
+  FuseOptions fuse;
+  TuneOptions tune;
+};
+
+// `arguments` must outlive the verbs.
+std::vector<Verb> add_fusion_verbs(CLI::App& app, FusionArguments& arguments);
+
+}  // namespace odobench

@@ -1,0 +1,41 @@
+// The sensors of `bench fuse` as a JSON file; docs/fusion.md describes it:
+//   {"seed": 1, "wheels": {"sigma_velocity", "sigma_yaw_rate"}, "start": {"sigma_position", "sigma_heading"},
+//    "sensors": [{"name", "type": "pose|heading|relative_pose|yaw_rate", "rate_hz", "delay_s", "missing",
+//                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...],
+//    "gyro_bias": {"initial", "walk"}, "odometry_scale": {...}, "gate_probability", "max_delay_s",
+//    "unscented": {"alpha", "beta", "kappa"}}
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "problems/fusion/fusion.hpp"
+#include "problems/fusion/sensor_streams.hpp"
+
+namespace odobench {
+
+struct SyntheticSensor {
+  SensorStream stream;  // what the filter believes; without data
+  StreamTiming timing;
+  CameraErrors camera;
+  GyroErrors gyro;
+};
+
+struct SensorsFile {
+  std::string name, description;
+  std::uint64_t seed = 1;
+  std::vector<SyntheticSensor> sensors;
+  FusionOptions options;  // filter kind and smoother are the command's business
+};
+
+// Throws DataError naming file, path, what was found and what was expected: unknown keys, an unknown type of sensor, values
+// that validate() or the generators refuse.
+SensorsFile read_sensors(const std::filesystem::path& file);
+
+// The streams of a recording; same seed, file and recording id: same bits.
+std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,
+                                       std::uint64_t seed);
+
+}  // namespace odobench
