@@ -19,6 +19,9 @@ struct ParameterSet {
 // file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
 std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source);
 
+// The entries of comma lists of such, except where a file has a comma in its name; "nominal" for none.
+std::vector<std::string> split_sources(const std::vector<std::string>& lists);
+
 // Parameters outside the box are evaluated with a warning on standard error.
 ExitCode evaluate_command(const EvaluateOptions& options);
 
