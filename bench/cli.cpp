@@ -17,9 +17,12 @@
 #include "bench/import_command.hpp"
 #include "bench/list_command.hpp"
 #include "bench/number_text.hpp"
+#include "bench/plan_command.hpp"
 #include "bench/run_arguments.hpp"
 #include "bench/run_command.hpp"
+#include "bench/simulate_command.hpp"
 #include "bench/table_output.hpp"
+#include "bench/verify_command.hpp"
 #include "bench/windows_command.hpp"
 #include "solvers/options.hpp"
 
@@ -59,6 +62,9 @@ struct Arguments {
   WindowsOptions windows;
   ImportOptions import;
   DemoOptions demo;
+  SimulateOptions simulate;
+  PlanOptions plan;
+  VerifyOptions verify;
   CheckOptions check;
   ReportOptions report;
   FusionArguments fusion;
@@ -85,9 +91,9 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
   evaluate->add_flag("--overwrite", a.evaluate.overwrite, "replace a file of --tracks that is there");
   add_format(*evaluate, a.evaluate.format);
 
-  CLI::App* list = app.add_subcommand("list", "solvers with their options, problems, data sets");
-  list->add_option("what", a.list.what, "solvers, problems or data")->required();
-  list->add_option("set", a.list.data, "with data: the set to describe [known places]");
+  CLI::App* list = app.add_subcommand("list", "solvers with their options, problems, data sets, scenarios");
+  list->add_option("what", a.list.what, "solvers, problems, data or scenarios")->required();
+  list->add_option("set", a.list.data, "with data or scenarios: the one to describe [known places]");
   add_format(*list, a.list.format);
 
   CLI::App* report = app.add_subcommand("report", "tables of stored runs");
@@ -175,12 +181,89 @@ void complete_verb(std::vector<std::string>& words, const std::vector<Verb>& ver
                                           near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
 }
 
+void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
+               const std::string& help) {
+  app.add_option_function<std::string>(
+         name,
+         [name, &value, lowest, highest](const std::string& text) {
+           value = static_cast<int>(whole_number(name, text, lowest, highest));
+         },
+         help)
+      ->type_name("N");
+}
+
+void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads) {
+  app.add_option_function<std::string>(
+         "--seed", [&seed](const std::string& text) { seed = seed_number("--seed", text); },
+         "of the noise [1]")
+      ->type_name("N");
+  add_count(app, "--threads", threads, 1, 1024, "threads; results do not depend on them [one per core]");
+}
+
+CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario) {
+  return app.add_option(name, scenario, "file or name; 'bench list scenarios' shows them")
+      ->required()
+      ->type_name("FILE|NAME");
+}
+
+std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
+  CLI::App* simulate = app.add_subcommand("simulate", "make recordings or sensor logs of a simulated robot");
+  add_scenario(*simulate, "--scenario", a.simulate.scenario);
+  simulate->add_option("--out", a.simulate.out, "folder to write")->required()->type_name("DIR");
+  add_noise_options(*simulate, a.simulate.seed, a.simulate.threads);
+  simulate->add_flag("--raw", a.simulate.raw, "raw CSV files as published, for 'bench import vitko2024'");
+  simulate->add_flag("--as-published", a.simulate.as_published,
+                     "the motor robot with the errors of its thesis (kind dynamics)");
+  simulate->add_flag("--overwrite", a.simulate.overwrite, "replace files that are there");
+  simulate->add_flag("--quiet", a.simulate.quiet, "no remarks");
+
+  CLI::App* plan =
+      app.add_subcommand("plan", "which parameters drives can determine, and which drives to add");
+  add_scenario(*plan, "--robot", a.plan.robot);
+  plan->add_option(
+          "--drives", a.plan.drives,
+          "drives, a name once per time it is driven, or 'none'; a comma list [those of the scenario]")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  plan->add_option("--candidates", a.plan.candidates,
+                   "propose drives out of these, 'all' or a comma list, until --wanted is met")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  plan->add_option_function<std::string>(
+          "--wanted",
+          [&a](const std::string& text) { a.plan.wanted = finite_number("--wanted", text, true) / 100; },
+          "standard deviation of every parameter, % of its nominal value [0.5]")
+      ->type_name("PERCENT");
+  add_count(*plan, "--replicas", a.plan.replicas, 2, 10000,
+            "simulations per drive that its noise is taken from [12]");
+  add_noise_options(*plan, a.plan.seed, a.plan.threads);
+  add_format(*plan, a.plan.format);
+
+  CLI::App* verify =
+      app.add_subcommand("verify", "judge parameter sets on new drives that are steered by them");
+  add_scenario(*verify, "--scenario", a.verify.scenario);
+  verify
+      ->add_option("--parameters", a.verify.parameters,
+                   "JSON files, 'nominal', 'truth' or 'believed'; a comma list, may be given again")
+      ->required()
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  add_count(*verify, "--repeat", a.verify.repeat, 1, 10000, "times that all drives are driven [10]");
+  add_noise_options(*verify, a.verify.seed, a.verify.threads);
+  add_format(*verify, a.verify.format);
+
+  return {{simulate, [&a] { return simulate_command(a.simulate); }},
+          {plan, [&a] { return plan_command(a.plan); }},
+          {verify, [&a] { return verify_command(a.verify); }}};
+}
+
 ExitCode dispatch(std::vector<std::string> words) {
   CLI::App app{"Calibrates wheeled robots from recordings and compares the solvers that do it.", "bench"};
   Arguments arguments;
   std::vector<Verb> verbs = add_writing_verbs(app, arguments);
   for (Verb& verb : add_reading_verbs(app, arguments)) verbs.push_back(std::move(verb));
   for (Verb& verb : add_fusion_verbs(app, arguments.fusion)) verbs.push_back(std::move(verb));
+  for (Verb& verb : add_simulation_verbs(app, arguments)) verbs.push_back(std::move(verb));
   app.footer(kExamples);
   app.set_version_flag("--version", version_line);
   for (const Verb& verb : verbs) {

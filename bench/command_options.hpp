@@ -79,8 +79,8 @@ struct EvaluateOptions {
 };
 
 struct ListOptions {
-  std::string what;  // solvers | problems | data
-  std::string data;  // with `data`: the set to describe; empty: known places
+  std::string what;  // solvers | problems | data | scenarios
+  std::string data;  // with `data`, `scenarios`: the one to describe; empty: known places
   std::string format = "console";
 };
 
@@ -96,6 +96,37 @@ struct DemoOptions {
   std::string out;
   std::optional<std::uint64_t> seed;  // of the noise; none: that of the demo set in the repository
   bool overwrite = false;
+};
+
+struct SimulateOptions {
+  std::string scenario;  // file or name
+  std::string out;
+  std::uint64_t seed = 1;
+  bool raw = false;           // the published CSV format instead of a data set
+  bool as_published = false;  // dynamics without the corrections
+  int threads = 0;            // 0: one per core
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+struct PlanOptions {
+  std::string robot;                    // scenario: file or name
+  std::vector<std::string> drives;      // comma lists; empty: those of the scenario
+  std::vector<std::string> candidates;  // comma lists to choose from; empty: no proposals
+  double wanted = 0.005;                // relative standard deviation
+  int replicas = 12;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::string format = "console";
+};
+
+struct VerifyOptions {
+  std::string scenario;
+  std::vector<std::string> parameters;  // files or names, comma lists
+  int repeat = 10;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::string format = "console";
 };
 
 struct CheckOptions {

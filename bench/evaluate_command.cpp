@@ -99,7 +99,8 @@ void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
   if (!list.empty()) warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
 }
 
-// Comma lists, except where a file has a comma in its name.
+}  // namespace
+
 std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
   std::vector<std::string> sources;
   for (const std::string& list : lists) {
@@ -115,8 +116,6 @@ std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
   }
   return sources.empty() ? std::vector<std::string>{"nominal"} : sources;
 }
-
-}  // namespace
 
 std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source) {
   if (source == "nominal") return {{"nominal", loaded.problem.start()}};

@@ -23,6 +23,8 @@ std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std
 // throws std::invalid_argument when two sets have one label.
 std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
                                               const std::vector<std::string>& lists);
+// The entries of comma lists of such, except where a file has a comma in its name; "nominal" for none.
+std::vector<std::string> split_sources(const std::vector<std::string>& lists);
 
 // Parameters outside the box are evaluated with a warning on standard error.
 ExitCode evaluate_command(const EvaluateOptions& options);

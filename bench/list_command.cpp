@@ -7,6 +7,7 @@
 
 #include "bench/locations.hpp"
 #include "bench/problem_factory.hpp"
+#include "bench/simulate_command.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/dataset.hpp"
 #include "problems/classic/classic_problems.hpp"
@@ -186,8 +187,8 @@ std::vector<Table> set_tables(const std::string& path) {
 
 ExitCode list_command(const ListOptions& options) {
   const Format format = parse_format(options.format);
-  const std::vector<std::string> known = {"solvers", "problems", "data"};
-  if (!options.data.empty() && options.what != "data")
+  const std::vector<std::string> known = {"solvers", "problems", "data", "scenarios"};
+  if (!options.data.empty() && options.what != "data" && options.what != "scenarios")
     throw std::invalid_argument(
         fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
   if (options.what == "solvers") {
@@ -196,11 +197,13 @@ ExitCode list_command(const ListOptions& options) {
     print_tables(problem_tables(), format);
   } else if (options.what == "data") {
     print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
+  } else if (options.what == "scenarios") {
+    print_tables(scenario_tables(options.data), format);
   } else {
     const std::string near = nearest_name(options.what, known);
-    throw std::invalid_argument(fmt::format("bench list '{}'{}: expected solvers, problems or data",
-                                            options.what,
-                                            near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+    throw std::invalid_argument(
+        fmt::format("bench list '{}'{}: expected solvers, problems, data or scenarios", options.what,
+                    near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
   return ExitCode::Success;
 }

@@ -39,6 +39,12 @@ fs::path demo_set() {
       looked));
 }
 
+fs::path scenario_folder() {
+  for (const fs::path& root : roots())
+    if (is_there(root / "scenarios")) return root / "scenarios";
+  return {};
+}
+
 std::vector<std::pair<std::string, fs::path>> known_sets() {
   std::vector<std::pair<std::string, fs::path>> list;
   for (const fs::path& root : roots()) {

@@ -11,6 +11,9 @@ namespace odobench {
 // The embedded demo set. Throws DataError naming every place looked at when it is nowhere.
 std::filesystem::path demo_set();
 
+// The folder of the scenarios that come with the program; empty when it is nowhere.
+std::filesystem::path scenario_folder();
+
 // Known sets that exist: (name, set.json).
 std::vector<std::pair<std::string, std::filesystem::path>> known_sets();
 

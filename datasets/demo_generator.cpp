@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "datasets/noise.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench {
@@ -48,28 +46,6 @@ constexpr std::array<Command, 6> kCommands = {{
     {0, 0, 2 * kPi / 40, 40},
     {0, 0, -2 * kPi / 40, 40},
 }};
-
-// Normal and uniform numbers with algorithms that do not depend on the standard library.
-class Noise {
- public:
-  explicit Noise(std::uint64_t seed) : engine_(seed) {}
-  double normal(double sigma) { return sigma * normal_(engine_); }
-  double uniform(double low, double high) {
-    return low + (high - low) * boost::random::uniform_01<double>()(engine_);
-  }
-
- private:
-  boost::random::mt19937_64 engine_;
-  boost::random::normal_distribution<double> normal_;
-};
-
-// The splitmix64 finaliser: neighbouring seeds and recordings get unrelated engines.
-std::uint64_t mixed(std::uint64_t seed, std::uint64_t index) {
-  std::uint64_t h = seed + 0x9e3779b97f4a7c15ull * (index + 1);
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ull;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebull;
-  return h ^ (h >> 31);
-}
 
 double to_grid(double value, double quantum) {
   return std::round(value / quantum) * quantum;
@@ -201,7 +177,7 @@ Dataset make_demo_dataset(std::uint64_t seed) {
   d.provenance.made_by = fmt::format("bench demo --seed={}", seed);
   for (std::size_t t = 0; t < d.trajectories.size(); ++t)
     for (int repetition = 1; repetition <= kRepetitions; ++repetition) {
-      Noise noise(mixed(seed, d.recordings.size()));
+      Noise noise(mixed_seed(seed, d.recordings.size()));
       Recording r = make_recording(kCommands[t], d.robot, noise);
       r.trajectory = d.trajectories[t].name;
       r.repetition = repetition;

@@ -136,6 +136,11 @@ std::string JsonNode::text_or_empty(const std::string& key) const {
   return has(key) ? at(key).text() : std::string();
 }
 
+bool JsonNode::boolean() const {
+  if (!value_->is_boolean()) fail(brief(*value_), "true or false");
+  return value_->get<bool>();
+}
+
 double JsonNode::number() const {
   if (!value_->is_number()) fail(brief(*value_), "a number");
   return value_->get<double>();

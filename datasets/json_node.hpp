@@ -34,6 +34,7 @@ class JsonNode {
   std::string text() const;
   // The text member, or nothing when it is absent.
   std::string text_or_empty(const std::string& key) const;
+  bool boolean() const;
   double number() const;
   std::int64_t integer() const;  // written without fraction or exponent, fits in 64 bits
   // Whole arrays at once; entries are checked like number() and integer().

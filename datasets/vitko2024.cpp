@@ -14,6 +14,7 @@
 #include "datasets/sha256.hpp"
 #include "datasets/synchronise.hpp"
 #include "datasets/vitko2024_csv.hpp"
+#include "datasets/vitko2024_join.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
@@ -21,7 +22,6 @@ namespace {
 
 constexpr int kRecordings = 30;
 constexpr int kRepetitions = 5;
-constexpr std::size_t kDropped = 29;
 // How far the wheel signals may be inter- and extrapolated: more means that the log has a hole, that a clock
 // was set, or that the two files do not belong together.
 constexpr std::int64_t kLongestGap_us = 1'000'000;
@@ -80,31 +80,17 @@ class Importer {
     const std::string capture_file = file("abs", number), wheel_file = file("odom", number);
     vitko2024::CaptureLog capture = vitko2024::parse_capture(load("abs", number, pair.capture), capture_file);
     vitko2024::WheelLog wheels = vitko2024::parse_wheels(load("odom", number, pair.wheels), wheel_file);
-    require_rows(capture.time_us, kDropped + 2, capture_file);
+    require_rows(capture.time_us, vitko2024::kDroppedSamples + 2, capture_file);
     require_rows(wheels.time_us, 2, wheel_file);
     pair.moved_capture = increase(capture.time_us, capture_file);
     pair.moved_wheels = increase(wheels.time_us, wheel_file);
     require_cover(capture, wheels, wheel_file);
-    unwrap(capture.yaw);
 
     Recording& r = pair.recording;
+    r = vitko2024::join(std::move(capture), wheels);
     r.trajectory = trajectories_[static_cast<std::size_t>((number - 1) / kRepetitions)].name;
     r.repetition = 1 + (number - 1) % kRepetitions;
     r.id = fmt::format("{}_{}", r.trajectory, r.repetition);
-    const auto kept = [](auto& values) {
-      values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(kDropped));
-      return std::move(values);
-    };
-    const std::vector<std::int64_t> stamps = kept(capture.time_us);
-    r.x = kept(capture.x);
-    r.y = kept(capture.y);
-    r.theta = kept(capture.yaw);
-    for (std::size_t i = 0; i < kWheelCount; ++i) {
-      r.steering[i] = interpolate(wheels.time_us, wheels.steering[i], stamps);
-      r.wheel_speed[i] = interpolate(wheels.time_us, wheels.wheel_speed[i], stamps);
-    }
-    r.time_us = stamps;
-    for (std::int64_t& t : r.time_us) t -= stamps.front();
     return pair;
   }
 

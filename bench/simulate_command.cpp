@@ -1,0 +1,202 @@
+#include "bench/simulate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bench/scenarios.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/file_io.hpp"
+#include "datasets/sha256.hpp"
+#include "datasets/simulate/parallel.hpp"
+#include "datasets/simulate/raw_csv.hpp"
+#include "datasets/simulate/simulated_set.hpp"
+#include "solvers/random.hpp"
+
+namespace odobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kRawDrives = 6;  // what the importer of raw files expects, five repetitions of each
+constexpr int kRawRepetitions = 5;
+
+void refuse_existing(const fs::path& file, bool overwrite) {
+  if (!overwrite && fs::exists(file))
+    throw std::invalid_argument(
+        fmt::format("{}: it exists; choose another folder or give --overwrite", file.string()));
+}
+
+void require_raw(const simulate::RecordingScenario& s) {
+  if (s.exact)
+    throw std::invalid_argument("--raw: contradictory options: an exact scenario has one clock and no logs");
+  const std::vector<simulate::Drive> wanted = simulate::reference_drives();
+  bool same = s.drives.size() == kRawDrives && s.repetitions == kRawRepetitions;
+  for (std::size_t i = 0; same && i < kRawDrives; ++i) same = s.drives[i].name == wanted[i].name;
+  if (!same)
+    throw std::invalid_argument(fmt::format(
+        "--raw: the scenario has {} drives, {} repetitions; the published files are line_x, line_y, "
+        "circle_ccw, circle_cw, rotation_ccw, rotation_cw, five of each",
+        s.drives.size(), s.repetitions));
+}
+
+void add_raw_files(const simulate::SimulatedSet& set, int threads, const fs::path& out,
+                   FileTransaction& files) {
+  struct Pair {
+    std::string capture, wheels, sums;
+  };
+  std::vector<Pair> pairs(set.drives.size());
+  simulate::parallel_for(pairs.size(), threads, [&](std::size_t i) {
+    const int number = static_cast<int>(i) + 1;
+    Pair& p = pairs[i];
+    p.capture = simulate::capture_csv(set.drives[i].logs, number);
+    p.wheels = simulate::wheels_csv(set.drives[i].logs, number);
+    p.sums =
+        fmt::format("{}  abs_{}.csv\n{}  odom_{}.csv\n", sha256(p.capture), number, sha256(p.wheels), number);
+  });
+  std::string sums;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    files.add(out / fmt::format("abs_{}.csv", i + 1), pairs[i].capture);
+    files.add(out / fmt::format("odom_{}.csv", i + 1), pairs[i].wheels);
+    sums += pairs[i].sums;
+  }
+  files.add(out / "SHA256SUMS", sums);
+}
+
+void write_recordings(const simulate::RecordingScenario& s, const SimulateOptions& o) {
+  const fs::path out = o.out, set_json = out / "set.json";
+  if (o.as_published)
+    throw std::invalid_argument(
+        "--as-published: it corrects nothing here; it belongs to scenarios of kind dynamics");
+  if (o.raw) require_raw(s);
+  refuse_existing(o.raw ? out / "abs_1.csv" : set_json, o.overwrite);
+  const simulate::SimulatedSet set = simulate::simulate_set(s, o.seed, o.threads);
+  FileTransaction files;
+  files.add(out / "truth.json", simulate::truth_json(s, o.seed, set));
+  files.add(out / "truth.csv", simulate::truth_csv(s, set));
+  if (o.raw) add_raw_files(set, o.threads, out, files);
+  files.commit();
+  if (!o.raw) save_dataset(set.dataset, set_json);
+  std::size_t samples = 0;
+  for (const Recording& r : set.dataset.recordings) samples += r.size();
+  if (!o.quiet)
+    note(fmt::format("{}: {} recordings, {} samples, truth.json and truth.csv beside them",
+                     (o.raw ? out : set_json).string(), set.dataset.recordings.size(), samples));
+}
+
+void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
+  if (o.raw) throw std::invalid_argument("--raw: it belongs to scenarios of kind recordings");
+  const fs::path out = o.out;
+  for (const char* name : {"sensors.csv", "truth.csv", "state.csv", "robot.json"})
+    refuse_existing(out / name, o.overwrite);
+  if (o.as_published) {
+    s.setup.model = dynamics::ModelOptions::as_published();
+    s.frame = dynamics::AccelerationFrame::World;
+  }
+  const std::vector<dynamics::Sample> samples = dynamics::simulate_drive(s.setup, s.output_step_s);
+  Random random(derive_seed(o.seed, {"dynamics", s.name}));
+  const dynamics::SensorRun run =
+      dynamics::sense(s.setup.robot, samples, s.frame, s.noise, [&random] { return random.normal(); });
+  FileTransaction files;
+  files.add(out / "sensors.csv", dynamics::sensor_csv(run.rows));
+  files.add(out / "truth.csv", dynamics::truth_csv(run.truth));
+  files.add(out / "state.csv", dynamics::state_csv(s.setup.robot, samples));
+  files.add(out / "robot.json", robot_json(s.setup.robot));
+  files.commit();
+  if (!o.quiet)
+    note(fmt::format("{}: sensors.csv, truth.csv and state.csv of {} samples, robot.json", out.string(),
+                     samples.size()));
+}
+
+Column column(const std::string& id, Align align = Align::Left) {
+  Column c;
+  c.id = c.name = id;
+  c.align = align;
+  return c;
+}
+
+std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
+  Table drives{"drives",
+               fmt::format("Drives of {}", s.name),
+               {column("drive"), column("description"), column("phases", Align::Right),
+                column("duration_s", Align::Right)},
+               {},
+               {s.description}};
+  for (const simulate::Drive& d : s.drives)
+    drives.rows.push_back({text_cell(d.name), text_cell(d.description),
+                           count_cell(static_cast<double>(d.phases.size())), fixed_cell(d.duration(), 1)});
+  Table robot{
+      "robot",
+      "True and believed parameters",
+      {column("parameter"), column("unit"), column("truth", Align::Right), column("believed", Align::Right)},
+      {},
+      {}};
+  for (std::size_t i = 0; i < s.robot.parameters.size(); ++i)
+    robot.rows.push_back({text_cell(s.robot.parameters[i].name), text_cell(s.robot.parameters[i].unit),
+                          significant_cell(s.truth.parameters[i], 7),
+                          significant_cell(s.control.believed[i], 7)});
+  return {drives, robot};
+}
+
+std::vector<Table> detail_tables(const DynamicsScenario& s) {
+  Table segments{"segments",
+                 fmt::format("Segments of {}", s.name),
+                 {column("until_s"), column("voltages_V"), column("steering_deg")},
+                 {},
+                 {s.description}};
+  for (const dynamics::Segment& g : s.setup.segments) {
+    std::string voltages, steering;
+    for (std::size_t i = 0; i < dynamics::kWheels; ++i) {
+      voltages += fmt::format("{}{:g}", i > 0 ? ", " : "", g.voltage[i]);
+      steering += fmt::format("{}{:g}", i > 0 ? ", " : "", g.steering[i] * 180 / 3.14159265358979323846);
+    }
+    segments.rows.push_back(
+        {text_cell(fmt::format("{:g}", g.until_s)), text_cell(voltages), text_cell(steering)});
+  }
+  Table robot{"robot",
+              "Robot parameters",
+              {column("parameter"), column("symbol"), column("value", Align::Right), column("unit"),
+               column("origin"), column("remark")},
+              {},
+              {"Origin: given by the thesis, or chosen because it gives nothing."}};
+  dynamics::RobotParameters copy = s.setup.robot;
+  for (const dynamics::ParameterDescription& d : dynamics::parameter_descriptions())
+    robot.rows.push_back({text_cell(d.name), text_cell(d.symbol), significant_cell(d.value(copy), 7),
+                          text_cell(d.unit), text_cell(d.given ? "given" : "chosen"), text_cell(d.text)});
+  return {segments, robot};
+}
+
+}  // namespace
+
+ExitCode simulate_command(const SimulateOptions& options) {
+  Scenario scenario = load_scenario(options.scenario);
+  if (const auto* recordings = std::get_if<simulate::RecordingScenario>(&scenario))
+    write_recordings(*recordings, options);
+  else
+    write_dynamics(std::get<DynamicsScenario>(std::move(scenario)), options);
+  return ExitCode::Success;
+}
+
+std::vector<Table> scenario_tables(const std::string& source) {
+  if (!source.empty())
+    return std::visit([](const auto& s) { return detail_tables(s); }, load_scenario(source));
+  Table table{"scenarios",
+              "Scenarios, as in bench simulate --scenario=NAME",
+              {column("scenario"), column("kind"), column("drives", Align::Right), column("description")},
+              {},
+              {"'bench list scenarios NAME' shows one in detail; docs/simulation.md describes the format."}};
+  for (const auto& [name, path] : known_scenarios()) {
+    const Scenario scenario = load_scenario(path.string());
+    if (const auto* r = std::get_if<simulate::RecordingScenario>(&scenario))
+      table.rows.push_back({text_cell(name), text_cell("recordings"),
+                            count_cell(static_cast<double>(r->drives.size()) * r->repetitions),
+                            text_cell(r->description)});
+    else
+      table.rows.push_back({text_cell(name), text_cell("dynamics"), count_cell(1),
+                            text_cell(std::get<DynamicsScenario>(scenario).description)});
+  }
+  return {table};
+}
+
+}  // namespace odobench

@@ -1,0 +1,44 @@
+// A loop on several threads whose result does not depend on them.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace odobench::simulate {
+
+// work(0) ... work(count - 1), each once, on `threads` threads (0: as many as the machine has). After an exception no
+// further index begins; that of the lowest index is passed on.
+template <class Work>
+void parallel_for(std::size_t count, int threads, const Work& work) {
+  std::size_t most = threads > 0 ? static_cast<std::size_t>(threads) : std::thread::hardware_concurrency();
+  most = std::clamp<std::size_t>(most, 1, std::max<std::size_t>(count, 1));
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr error;
+  std::size_t error_index = count;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (i < error_index) {
+          error_index = i;
+          error = std::current_exception();
+        }
+        next = count;
+      }
+    }
+  };
+  std::vector<std::thread> pool;
+  for (std::size_t k = 1; k < most; ++k) pool.emplace_back(run);
+  run();
+  for (std::thread& thread : pool) thread.join();
+  if (error) std::rethrow_exception(error);
+}
+
+}  // namespace odobench::simulate
