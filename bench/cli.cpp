@@ -235,7 +235,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
           "standard deviation of every parameter, % of its nominal value [0.5]")
       ->type_name("PERCENT");
   add_count(*plan, "--replicas", a.plan.replicas, 2, 10000,
-            "simulations per drive that its noise is taken from [12]");
+            "simulations per drive that its noise is taken from [32]");
   add_noise_options(*plan, a.plan.seed, a.plan.threads);
   add_format(*plan, a.plan.format);
 

@@ -114,7 +114,7 @@ struct PlanOptions {
   std::vector<std::string> drives;      // comma lists; empty: those of the scenario
   std::vector<std::string> candidates;  // comma lists to choose from; empty: no proposals
   double wanted = 0.005;                // relative standard deviation
-  int replicas = 12;
+  int replicas = 32;                    // fewer miss the rare late messages that decide
   std::uint64_t seed = 1;
   int threads = 0;
   std::string format = "console";

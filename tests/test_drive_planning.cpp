@@ -159,7 +159,7 @@ double total_error(const Dataset& set, const Vector& z) {
 TEST(DrivePlanning, DeterminedParametersComeBack) {
   const RecordingScenario s = known("rich");
   const std::vector<int> counts(s.drives.size(), s.repetitions);
-  const PlanAnalysis plan = analyse_drives(informations(s, 16, 99), counts, infos(s.robot), 0.005);
+  const PlanAnalysis plan = analyse_drives(informations(s, 40, 99), counts, infos(s.robot), 0.005);
   std::vector<Eigen::Index> determined;
   for (Eigen::Index i = 0; i < 12; ++i)
     if (plan.standard_deviations[i] <= 0.005) determined.push_back(i);

@@ -1,4 +1,5 @@
 // Motor and four-wheel robot: against independent solutions, against what physics demands, and what bad input gets.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -102,7 +103,7 @@ TEST_P(ReferenceRuns, AreMatchedTo1e8) {
     ++runs;
   }
   EXPECT_EQ(runs, 10u);
-  RecordProperty("worst", std::to_string(worst));
+  RecordProperty("worst", fmt::format("{:.2g}", worst));
 }
 INSTANTIATE_TEST_SUITE_P(Dynamics, ReferenceRuns,
                          ::testing::Values(Method::RungeKutta4, Method::DormandPrince), [](const auto& i) {

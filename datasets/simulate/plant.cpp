@@ -11,8 +11,8 @@ namespace {
 constexpr double kStep_s = 0.004;      // at most
 constexpr double kMoving = 0.02;       // rad/s
 constexpr double kSlipTime_s = 0.5;    // correlation time of random slip
-constexpr double kWanderSpread = 1.6;  // of its logarithm over recordings
-constexpr double kLargestWander = 10;  // times the median
+constexpr double kWanderSpread = 2.2;  // of its logarithm over recordings
+constexpr double kLargestWander = 20;  // times the median
 constexpr double kLargestBias = 3;     // standard deviations
 
 // A stationary first-order process: what its next value is, `share` of it kept.

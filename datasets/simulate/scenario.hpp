@@ -64,7 +64,7 @@ struct Control {
   double wheel_lag_s = 0.036;       // twice: two first-order lags
   double steering_rate = 4.6;       // rad/s
   double steering_bias = 0.0014;    // rad, standard deviation over recordings of a servo's deviation
-  double steering_wander = 0.0006;  // rad, median over recordings of its standard deviation within one
+  double steering_wander = 0.0003;  // rad, median over recordings of its standard deviation within one
   double wander_time_s = 8;         // correlation time of the wander
 };
 
