@@ -24,7 +24,7 @@ struct Consistency {
 };
 
 struct Drive {
-  FilterOptions options;
+  KalmanOptions options;
   bool gyro = true;
   int camera_every = 3;
 };

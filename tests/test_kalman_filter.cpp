@@ -66,7 +66,7 @@ template <class Check>
 void run_reference(FilterKind kind, const json& v, Check check) {
   Vector z(12);
   for (Eigen::Index i = 0; i < 12; ++i) z[i] = v.at("p").at(static_cast<std::size_t>(i)).get<double>();
-  FilterOptions options;
+  KalmanOptions options;
   options.kind = kind;
   PoseFilter filter({}, options, vector3(v.at("x0")), Matrix(vector3(v.at("P0")).asDiagonal()));
   const Matrix3d lq = root_of_diagonal(vector3(v.at("Qu_diag"))),
@@ -148,7 +148,7 @@ LinearCase linear_case(int steps) {
 }
 
 Vector filtered(const LinearCase& c, FilterKind kind, Matrix* covariance) {
-  FilterOptions options;
+  KalmanOptions options;
   options.kind = kind;
   LinearKalmanFilter filter(c.model, options, Vector::Zero(4), c.p0);
   const Matrix lq = covariance_factor("Q", c.q), lr = covariance_factor("R", c.r);
@@ -199,7 +199,7 @@ TEST(LinearFilter, EqualsBatchLeastSquares) {
 
 TEST(ExtendedFilter, RecoversTheTruthFromExactMeasurements) {
   for (const FilterKind kind : {FilterKind::Extended, FilterKind::Unscented}) {
-    FilterOptions options;
+    KalmanOptions options;
     options.kind = kind;
     PoseFilter filter({}, options, Vector3d(0.3, -0.2, 0.1), Matrix3d::Identity());
     Vector3d truth(0, 0, 3.0);
@@ -221,7 +221,7 @@ TEST(ExtendedFilter, RecoversTheTruthFromExactMeasurements) {
 TEST(ExtendedFilter, ReadToTheLetterItLeadsByOneIncrement) {
   for (const double gain : {0.1, 1.0, 10.0}) {
     for (const bool literal : {false, true}) {
-      FilterOptions options;
+      KalmanOptions options;
       options.literal_47 = literal;
       PoseFilter filter({}, options, Vector3d::Zero(), Matrix3d::Identity() * 1e-4);
       Vector3d truth = Vector3d::Zero();
@@ -255,7 +255,7 @@ TEST(ExtendedFilter, StaysPositiveDefiniteForTenMillionSteps) {
 }
 
 TEST(UnscentedFilter, StaysPositiveDefiniteToo) {
-  FilterOptions options;
+  KalmanOptions options;
   options.kind = FilterKind::Unscented;
   PoseFilter filter({}, options, Vector3d::Zero(), Matrix3d::Identity());
   const Matrix3d lq = Vector3d(1e-2, 1e-6, 1e-3).asDiagonal(), lr = Vector3d(1e-7, 1, 1e-5).asDiagonal();
@@ -287,7 +287,7 @@ TEST(Filter, GatesOutliersAndSaysSo) {
 
 TEST(Filter, ComparesAnglesAcrossTheJump) {
   for (const FilterKind kind : {FilterKind::Extended, FilterKind::Unscented}) {
-    FilterOptions options;
+    KalmanOptions options;
     options.kind = kind;
     PoseFilter filter({}, options, Vector3d(0, 0, 7 * kPi - 0.001), Matrix3d::Identity() * 1e-2);
     const auto i = filter.update(PoseSensor<3>(), Vector3d(0, 0, -kPi + 0.001), Matrix3d::Identity() * 1e-6);
@@ -336,7 +336,7 @@ TEST(Filter, RelativePosesHaveTheRightJacobian) {
 TEST(Filter, LearnsTheBiasOfAGyro) {
   using Model = RobotModel<true, false, false>;
   for (const FilterKind kind : {FilterKind::Extended, FilterKind::Unscented}) {
-    FilterOptions options;
+    KalmanOptions options;
     options.kind = kind;
     KalmanFilter<Model> filter({}, options, Eigen::Vector4d::Zero(),
                                Matrix(Eigen::Vector4d(1e-6, 1e-6, 1e-6, 1e-2).asDiagonal()));
@@ -373,7 +373,7 @@ TEST(Filter, RefusesBadInput) {
   const Vector3d nan = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, {}, nan, Matrix::Identity(3, 3)); }),
               HasSubstr("not finite"));
-  FilterOptions options;
+  KalmanOptions options;
   options.kind = FilterKind::Unscented;
   options.unscented.alpha = 1e-3;
   EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, options, zero, Matrix::Identity(3, 3)); }),

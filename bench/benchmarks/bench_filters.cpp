@@ -15,8 +15,8 @@ namespace {
 using Model = RobotModel<false, false, false>;
 using Filter = KalmanFilter<Model>;
 
-FilterOptions options_of(FilterKind kind) {
-  FilterOptions options;
+KalmanOptions options_of(FilterKind kind) {
+  KalmanOptions options;
   options.kind = kind;
   return options;
 }

@@ -52,7 +52,7 @@ inline SigmaWeights sigma_weights(const UnscentedOptions& o, Eigen::Index n) {
   return w;
 }
 
-struct FilterOptions {
+struct KalmanOptions {
   FilterKind kind = FilterKind::Extended;
   UnscentedOptions unscented;
   // (4.7) of J. Vitko's thesis read to the letter: the innovation is z - h(x_n) with the state before the prediction.

@@ -48,7 +48,7 @@ struct WalkingState {
 };
 
 struct FusionOptions {
-  FilterOptions filter;
+  KalmanOptions filter;
   double sigma_velocity = 0.01;    // of the wheels' twist, one sample: m/s in x and in y,
   double sigma_yaw_rate = 0.02;    // rad/s
   double initial_position = 1e-3;  // standard deviations of the start, m and rad

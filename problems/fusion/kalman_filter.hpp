@@ -50,7 +50,7 @@ class KalmanFilter {
 
   // Throws std::invalid_argument when sizes do not match, x is not finite, p is no covariance (zero eigenvalues are
   // allowed: a start that is known), or the sigma-point weights are not usable.
-  KalmanFilter(M model, const FilterOptions& options, const State& x, const ConstMatrixRef& p);
+  KalmanFilter(M model, const KalmanOptions& options, const State& x, const ConstMatrixRef& p);
 
   const M& model() const { return model_; }
   const State& state() const { return x_; }
@@ -98,13 +98,13 @@ class KalmanFilter {
   void require_finite(const char* where) const;
 
   M model_;
-  FilterOptions options_;
+  KalmanOptions options_;
   State x_, before_;  // before_: ahead of the last prediction
   Square s_;
 };
 
 template <class M>
-KalmanFilter<M>::KalmanFilter(M model, const FilterOptions& options, const State& x, const ConstMatrixRef& p)
+KalmanFilter<M>::KalmanFilter(M model, const KalmanOptions& options, const State& x, const ConstMatrixRef& p)
     : model_(std::move(model)), options_(options), x_(x), before_(x) {
   if (p.rows() != x.size())
     throw std::invalid_argument("initial covariance is " + std::to_string(p.rows()) + " x " +
