@@ -23,6 +23,7 @@ constexpr std::size_t kShownComponents = 4;
 Column column(const std::string& id, const std::string& unit = "", Align align = Align::Right) {
   Column c;
   c.id = c.name = id;
+  std::replace(c.name.begin(), c.name.end(), '_', ' ');
   c.unit = unit;
   c.align = align;
   return c;
@@ -130,7 +131,7 @@ Cell percent(double relative) {
 Table parameter_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& parameters, double wanted) {
   Table t{"plan.parameters",
           "What these drives tell about each parameter",
-          {column("parameter", "", Align::Left), column("deviation", "%"), column("deviation_abs", "mm"),
+          {column("parameter", "", Align::Left), column("deviation", "%"), column("absolute_deviation", "mm"),
            column("determined", "", Align::Left)},
           {},
           {}};
