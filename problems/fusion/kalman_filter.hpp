@@ -93,6 +93,11 @@ class KalmanFilter {
   template <class S>
   Innovation<S::kSize> unscented_update(const S& sensor, const Eigen::Matrix<double, S::kSize, 1>& z,
                                         const Eigen::Matrix<double, S::kSize, S::kSize>& lr, double gate);
+  // Corrects the state with out.nu: dx (n x count) and dz (m x count) are deviations of the state and of the predicted
+  // measurement, P = dx dx', cross covariance dx dz', covariance of the innovation dz dz' + lr lr'. Fills the rest of out.
+  template <int Z, int C>
+  void correct(const Eigen::Matrix<double, kN, C>& dx, const Eigen::Matrix<double, Z, C>& dz,
+               const Eigen::Matrix<double, Z, Z>& lr, double gate, Innovation<Z>& out);
   template <int Z>
   static void measure_innovation(Innovation<Z>& out, double gate);
   void require_finite(const char* where) const;
@@ -281,7 +286,6 @@ Innovation<S::kSize> KalmanFilter<M>::update(const S& sensor, const Eigen::Matri
                                              const Eigen::Matrix<double, S::kSize, S::kSize>& lr,
                                              double gate) {
   constexpr int kZ = S::kSize;
-  constexpr int kWide = kN == Eigen::Dynamic || kZ == Eigen::Dynamic ? Eigen::Dynamic : kN + kZ;
   if constexpr (kZ == Eigen::Dynamic) {
     const Eigen::Index size = sensor.measure(x_).size();
     if (z.size() != size || lr.rows() != size || lr.cols() != size)
@@ -290,27 +294,11 @@ Innovation<S::kSize> KalmanFilter<M>::update(const S& sensor, const Eigen::Matri
                                   ", expected those of the sensor: " + std::to_string(size));
   }
   if (options_.kind == FilterKind::Unscented) return unscented_update(sensor, z, lr, gate);
-  const Eigen::Index n = x_.size(), m = z.size();
   Innovation<kZ> out;
   out.nu = z - sensor.measure(options_.literal_47 ? before_ : x_);
   sensor.wrap(out.nu);
   const Eigen::Matrix<double, kZ, kN> a = sensor.jacobian(x_) * s_;
-  Eigen::Matrix<double, kZ, kWide> innovation(m, n + m);
-  innovation.template leftCols<kN>(n) = a;
-  innovation.template rightCols<kZ>(m) = lr;
-  out.factor = lower_triangular<kZ, kWide>(innovation);
-  measure_innovation<kZ>(out, gate);
-  if (!out.accepted) return out;
-  // K' = (Sy Sy')^-1 A S'
-  const Eigen::Matrix<double, kZ, kN> kt =
-      backward_solved<kZ, kN>(out.factor, forward_solved<kZ, kN>(out.factor, a * s_.transpose()));
-  const Eigen::Matrix<double, kN, kZ> k = kt.transpose();
-  x_ += k * out.nu;
-  Eigen::Matrix<double, kN, kWide> wide(n, n + m);
-  wide.template leftCols<kN>(n) = s_ - k * a;
-  wide.template rightCols<kZ>(m) = k * lr;
-  s_ = lower_triangular<kN, kWide>(wide);
-  require_finite("update");
+  correct<kZ, kN>(s_, a, lr, gate, out);
   return out;
 }
 
@@ -321,7 +309,6 @@ Innovation<S::kSize> KalmanFilter<M>::unscented_update(const S& sensor,
                                                        const Eigen::Matrix<double, S::kSize, S::kSize>& lr,
                                                        double gate) {
   constexpr int kZ = S::kSize;
-  constexpr bool kFixed = kN != Eigen::Dynamic && kZ != Eigen::Dynamic;
   constexpr int kCount = kN == Eigen::Dynamic ? Eigen::Dynamic : 2 * kN + 1;
   const Eigen::Index n = x_.size(), m = z.size(), count = 2 * n + 1;
   const SigmaWeights q = sigma_weights(options_.unscented, n);
@@ -348,23 +335,32 @@ Innovation<S::kSize> KalmanFilter<M>::unscented_update(const S& sensor,
   Innovation<kZ> out;
   out.nu = z - (options_.literal_47 ? sensor.measure(before_) : Value(centre + mean));
   sensor.wrap(out.nu);
-  constexpr int kWideZ = kFixed ? 2 * kN + 1 + kZ : Eigen::Dynamic;
-  Eigen::Matrix<double, kZ, kWideZ> innovation(m, count + m);
-  innovation.template leftCols<kCount>(count) = dz;
-  innovation.template rightCols<kZ>(m) = lr;
-  out.factor = lower_triangular<kZ, kWideZ>(innovation);
-  measure_innovation<kZ>(out, gate);
-  if (!out.accepted) return out;
-  const Eigen::Matrix<double, kZ, kN> kt =
-      backward_solved<kZ, kN>(out.factor, forward_solved<kZ, kN>(out.factor, dz * dx.transpose()));
-  const Eigen::Matrix<double, kN, kZ> k = kt.transpose();
-  x_ += k * out.nu;
-  Eigen::Matrix<double, kN, kWideZ> wide(n, count + m);
-  wide.template leftCols<kCount>(count) = dx - k * dz;
-  wide.template rightCols<kZ>(m) = k * lr;
-  s_ = lower_triangular<kN, kWideZ>(wide);
-  require_finite("update");
+  correct<kZ, kCount>(dx, dz, lr, gate, out);
   return out;
+}
+
+template <class M>
+template <int Z, int C>
+void KalmanFilter<M>::correct(const Eigen::Matrix<double, kN, C>& dx, const Eigen::Matrix<double, Z, C>& dz,
+                              const Eigen::Matrix<double, Z, Z>& lr, double gate, Innovation<Z>& out) {
+  constexpr int kWide = C == Eigen::Dynamic || Z == Eigen::Dynamic ? Eigen::Dynamic : C + Z;
+  const Eigen::Index n = dx.rows(), m = dz.rows(), count = dx.cols();
+  Eigen::Matrix<double, Z, kWide> innovation(m, count + m);
+  innovation.template leftCols<C>(count) = dz;
+  innovation.template rightCols<Z>(m) = lr;
+  out.factor = lower_triangular<Z, kWide>(innovation);
+  measure_innovation<Z>(out, gate);
+  if (!out.accepted) return;
+  // K' = (Sy Sy')^-1 dz dx'
+  const Eigen::Matrix<double, Z, kN> kt =
+      backward_solved<Z, kN>(out.factor, forward_solved<Z, kN>(out.factor, dz * dx.transpose()));
+  const Eigen::Matrix<double, kN, Z> k = kt.transpose();
+  x_ += k * out.nu;
+  Eigen::Matrix<double, kN, kWide> wide(n, count + m);
+  wide.template leftCols<C>(count) = dx - k * dz;
+  wide.template rightCols<Z>(m) = k * lr;
+  s_ = lower_triangular<kN, kWide>(wide);
+  require_finite("update");
 }
 
 }  // namespace odobench
