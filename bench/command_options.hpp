@@ -74,6 +74,7 @@ struct EvaluateOptions {
   std::string data;
   std::vector<std::string> parameters;  // files or names, as typed; empty: nominal
   std::string tracks;                   // CSV file for the paths; empty: none
+  std::string out;                      // folder for records, tables and tracks; empty: none
   bool overwrite = false;
   std::string format = "console";
 };
@@ -138,7 +139,17 @@ struct CheckOptions {
 
 struct ReportOptions {
   std::vector<std::string> runs;
+  std::string out;      // HTML page; empty: none
+  std::string figures;  // folder for SVG files; empty: none
+  std::string title;    // of the page; empty: what was run
   std::string format = "console";
+};
+
+struct ExportOptions {
+  std::string run;  // folder
+  bool tum = false;
+  std::string out;  // folder
+  bool overwrite = false;
 };
 
 }  // namespace odobench

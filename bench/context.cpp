@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 #include "bench/git_revision.hpp"
+#include "solvers/library_versions.hpp"
 
 namespace odobench {
 namespace {
@@ -29,10 +31,27 @@ std::string compiler() {
 #endif
 }
 
+// Of this process, words quoted where a shell would split them; the program without its folder.
+std::string command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string line;
+  for (std::string word; std::getline(file, word, '\0');) {
+    if (line.empty()) word = std::filesystem::path(word).filename().string();
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                            "-_=+.,:/@%") == std::string::npos;
+    for (std::size_t at = 0; !plain && (at = word.find('\'', at)) != std::string::npos; at += 4)
+      word.replace(at, 1, "'\\''");
+    line += (line.empty() ? "" : " ") + (plain ? word : "'" + word + "'");
+  }
+  return line;
+}
+
 }  // namespace
 
 RunContext run_context(int threads) {
-  return {cpu_model(), compiler(), ODOBENCH_BUILD_TYPE, kGitRevision, ODOBENCH_VERSION, threads};
+  return {cpu_model(),      compiler(), ODOBENCH_BUILD_TYPE, kGitRevision,
+          ODOBENCH_VERSION, threads,    command_line(),      library_versions()};
 }
 
 std::string utc_now() {

@@ -11,6 +11,7 @@
 
 #include "bench/context.hpp"
 #include "bench/records.hpp"
+#include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
 #include "bench/tracks.hpp"
 #include "datasets/error.hpp"
@@ -157,6 +158,7 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   if (!options.tracks.empty() && !options.overwrite && std::filesystem::exists(options.tracks))
     throw std::invalid_argument(
         fmt::format("--tracks={}: it exists; choose another name or give --overwrite", options.tracks));
+  if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   const LoadedProblem loaded = load_calibration(options.data);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);
   const RunContext context = run_context(1);
@@ -164,8 +166,16 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   for (const ParameterSet& set : sets) {
     records.push_back(evaluation_record(loaded, set.label, set.values, context));
   }
+  const std::vector<Table> tables = evaluation_tables(records);
+  if (!options.out.empty()) {
+    RecordFile file(options.out, options.overwrite);
+    remove_tracks(options.out);
+    for (const RunRecord& r : records) file.append(r);
+    save_run_tracks(loaded, records, options.out);
+    save_tables(tables, options.out);
+  }
   if (!options.tracks.empty()) write_file(options.tracks, tracks_csv(*loaded.calibration, sets));
-  print_tables(evaluation_tables(records), format);
+  print_tables(tables, format);
   return ExitCode::Success;
 }
 

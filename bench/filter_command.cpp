@@ -12,6 +12,7 @@
 #include "bench/context.hpp"
 #include "bench/filter_output.hpp"
 #include "bench/filter_search.hpp"
+#include "bench/filter_signals.hpp"
 #include "bench/filter_statistics.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/records.hpp"
@@ -120,6 +121,7 @@ class FilterRun {
         filter_(profile_, method_.search.get()),
         converter_(setup),
         noise_(setup),
+        signals_(!options.truth.empty()),
         rows_(static_cast<std::size_t>(setup.constants.samples)),
         truths_(rows_count()),
         times_(rows_count()),
@@ -151,6 +153,7 @@ class FilterRun {
       return o == nullptr ? std::nullopt : std::optional<double>(o->hamiltonian);
     };
     method_meter_.add(*output, value(exact), value(relaxed));
+    signals_.add(rows_[0], *output, with_truth_ ? &truths_[0] : nullptr, with_truth_ ? &truths_[1] : nullptr);
     if (with_truth_) noise_.add(rows_[0], truths_[0], truths_[1], *output);
     if (file_) file_->add(*output, times_[0]);
     return true;
@@ -172,6 +175,7 @@ class FilterRun {
   SlidingFilter filter_;
   SampleConverter converter_;
   NoiseMeter noise_;
+  SignalMeter signals_;
   MethodMeter method_meter_;
   LastOf<ConvertedRow> rows_;
   LastOf<TrueSample> truths_;
@@ -198,6 +202,8 @@ RunRecord FilterRun::record(double seconds) const {
   r.seconds = seconds;
   method_meter_.report(r.statistics);
   if (with_truth_) noise_.report(r.statistics);
+  signals_.report(r.series);
+  method_meter_.histogram().report(r.series);
   r.statistics["rows"] = static_cast<double>(count_);
   r.statistics["windows_per_second"] = static_cast<double>(windows()) / seconds;
   return r;

@@ -103,8 +103,10 @@ void MethodMeter::add(const FilterOutput& output, std::optional<double> exact,
   hamiltonian_.add(output.hamiltonian);
   gain_.add(output.hamiltonian - output.zero.h0);
   if (exact) {
-    gap_exact_.add(*exact - output.hamiltonian);
-    if (*exact - output.hamiltonian <= kSameOptimum * std::abs(*exact)) ++at_optimum_;
+    const double gap = *exact - output.hamiltonian;
+    gap_exact_.add(gap);
+    histogram_.add(gap, *exact);
+    at_optimum_ += gap <= kSameOptimum * std::abs(*exact) ? 1 : 0;
   }
   if (relaxed) gap_relaxed_.add(*relaxed - output.hamiltonian);
 }

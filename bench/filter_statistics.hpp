@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/filter_setup.hpp"
+#include "bench/filter_signals.hpp"
 #include "problems/entropy/sliding_filter.hpp"
 #include "reports/filter_tables.hpp"
 
@@ -84,11 +85,13 @@ class MethodMeter {
   std::int64_t windows() const { return hamiltonian_.count(); }
   std::int64_t iterations() const { return iterations_sum_; }
   std::int64_t evaluations() const { return evaluations_sum_; }
+  const GapHistogram& histogram() const { return histogram_; }
   double hamiltonian_mean() const { return hamiltonian_.mean(); }
   void report(std::map<std::string, double>& statistics) const;
 
  private:
   Average iterations_, evaluations_, hamiltonian_, gain_, gap_exact_, gap_relaxed_;
+  GapHistogram histogram_;
   std::int64_t iterations_sum_ = 0, evaluations_sum_ = 0, at_optimum_ = 0;
 };
 

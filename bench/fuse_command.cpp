@@ -11,8 +11,11 @@
 
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
+#include "bench/records.hpp"
+#include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
 #include "problems/fusion/consistency.hpp"
+#include "reports/fusion_record.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {
@@ -37,20 +40,26 @@ int thread_count(int asked) {
 // What one recording gave.
 struct Fused {
   TrackErrors errors;
+  PoseTrack track;
   std::vector<SensorStatistics> sensors;
 };
 
 Fused fuse_one(const Recording& recording, const Vector& z, const FilterChoice& filter,
                const SensorsFile& sensors, const std::vector<SensorStream>& streams) {
-  if (!filter.filtered) return {track_errors(recording, direct::integrate(recording, z), {}), {}};
+  if (!filter.filtered) {
+    PoseTrack track = direct::integrate(recording, z);
+    return {track_errors(recording, track, {}), std::move(track), {}};
+  }
   FusionOptions options = sensors.options;
   options.filter.kind = filter.kind;
   options.filter.literal_47 = filter.literal;
   options.smooth = filter.smooth;
   FusionResult result = fuse(recording, z, streams, options);
   if (filter.smooth)
-    return {track_errors(recording, result.smoothed, result.smoothed_factors), std::move(result.sensors)};
-  return {track_errors(recording, result.track, result.factors), std::move(result.sensors)};
+    return {track_errors(recording, result.smoothed, result.smoothed_factors), std::move(result.smoothed),
+            std::move(result.sensors)};
+  return {track_errors(recording, result.track, result.factors), std::move(result.track),
+          std::move(result.sensors)};
 }
 
 // Of 95 % expected; instants of one drive are not independent.
@@ -82,6 +91,7 @@ void summarise_nees(const std::vector<Fused>& fused, FusionRow& row) {
       mean += f.errors.nees[g] / count;
       components += f.errors.component_nees[g] / count / static_cast<double>(TrackErrors::kGrid);
     }
+    row.nees.push_back(mean);
     row.mean_nees += mean / static_cast<double>(TrackErrors::kGrid);
     row.inside += (band.holds(mean) ? 1.0 : 0.0) / static_cast<double>(TrackErrors::kGrid);
   }
@@ -203,6 +213,7 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
     samples += n;
     position += n * e.rmse_position * e.rmse_position;
     heading += n * e.rmse_heading * e.rmse_heading;
+    append_track(fused[i].track, out.track);
     out.errors.push_back(
         {e.max.recording, e.max.trajectory, e.max.repetition, {e.max.x, e.max.y, e.max.theta}});
   }
@@ -226,33 +237,69 @@ std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
   return streams;
 }
 
+namespace {
+
+// Title, description and sensors of the table, in words.
+std::vector<std::string> sensor_notes(const Table& table) {
+  std::vector<std::string> notes{table.title};
+  for (const std::vector<Cell>& row : table.rows) {
+    std::string text = row.front().text + ": ";
+    for (std::size_t c = 1; c < row.size(); ++c)
+      text += fmt::format("{}{} {}", c > 1 ? "; " : "", table.columns[c].name, row[c].text);
+    notes.push_back(text);
+  }
+  notes.insert(notes.end(), table.notes.begin(), table.notes.end());
+  return notes;
+}
+
+void save_fusion(const FuseOptions& options, const std::vector<RunRecord>& records, const TrackSet& tracks,
+                 const std::vector<Table>& tables) {
+  RecordFile file(options.out, options.overwrite);
+  remove_tracks(options.out);
+  for (const RunRecord& record : records) file.append(record);
+  save_tracks(tracks, options.out);
+  save_tables(tables, options.out);
+}
+
+}  // namespace
+
 ExitCode fuse_command(const FuseOptions& options) {
   const Format format = parse_format(options.format);
   const std::vector<FilterChoice> filters = parse_filters(options.filters);
   const SensorsFile sensors = read_sensors(options.sensors);
   const LoadedProblem loaded = load_calibration(options.data);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);
+  if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   const std::uint64_t seed = options.seed.value_or(sensors.seed);
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
   const std::vector<std::vector<SensorStream>> streams =
       all_streams(sensors, recordings, seed, options.threads);
+  const Table about = sensor_table(sensors, seed, loaded.dataset_name());
+  const RunContext context = run_context(thread_count(options.threads));
   std::vector<RunRecord> records;
   std::vector<FusionRow> rows;
+  TrackSet tracks = reference_tracks(kFusionProblem, loaded);
   for (const FilterChoice& filter : filters)
     for (const ParameterSet& set : sets) {
       FusedRow fused = fuse_all(recordings, set.values, filter, sensors, streams, options.threads);
       fused.row.label = filter.filtered ? set.label + "+" + filter.name : set.label;
       RunRecord record;
-      record.problem = "fusion";
+      put_fusion_row(fused.row, record);
       record.dataset = loaded.dataset_name();
       record.dataset_sha256 = loaded.dataset_sha256;
-      record.kind = "evaluation";
-      record.label = fused.row.label;
+      record.seed = record.base_seed = seed;
+      record.termination = "evaluated";
       record.errors = std::move(fused.errors);
+      record.notes = sensor_notes(about);
+      record.context = context;
+      record.time_utc = utc_now();
       records.push_back(std::move(record));
+      if (!options.out.empty()) tracks.tracks.push_back({fused.row.label, 1, std::move(fused.track)});
       rows.push_back(std::move(fused.row));
     }
-  print_tables(fusion_tables(sensor_table(sensors, seed, loaded.dataset_name()), records, rows), format);
+  const std::vector<Table> tables = fusion_tables(&about, records, rows);
+  if (!options.out.empty()) save_fusion(options, records, tracks, tables);
+  print_tables(tables, format);
   return ExitCode::Success;
 }
 

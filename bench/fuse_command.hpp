@@ -11,6 +11,7 @@
 #include "bench/problem_factory.hpp"
 #include "bench/sensors_file.hpp"
 #include "reports/fusion_tables.hpp"
+#include "reports/tracks.hpp"
 
 namespace odobench {
 
@@ -21,6 +22,8 @@ struct FuseOptions {
   std::string sensors;                  // file
   std::optional<std::uint64_t> seed;    // instead of the file's
   int threads = 0;                      // 0: one per core
+  std::string out;                      // folder for records, tables and tracks; empty: none
+  bool overwrite = false;
   std::string format = "console";
 };
 
@@ -39,6 +42,7 @@ std::vector<FilterChoice> parse_filters(const std::vector<std::string>& lists);
 struct FusedRow {
   FusionRow row;
   std::vector<RecordingError> errors;
+  PoseColumns track;  // all recordings, one after the other
 };
 
 // All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the result.

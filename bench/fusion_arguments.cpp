@@ -57,6 +57,8 @@ Verb add_fuse(CLI::App& app, FuseOptions& o) {
           },
           "threads; results do not depend on them [one per core]")
       ->type_name("N");
+  verb->add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
+  verb->add_flag("--overwrite", o.overwrite, "replace runs that the folder holds");
   add_format(*verb, o.format);
   return {verb, [&o] { return fuse_command(o); }};
 }

@@ -43,6 +43,7 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
       1e-14 * static_cast<double>(n) * std::max(values.size() > 0 ? values[n - 1] : 0.0, 0.0);
   const double freedom = static_cast<double>(problem.residual_count() - n);
   const double variance = freedom > 0 ? e.cost / freedom : std::numeric_limits<double>::infinity();
+  result.residual_deviation = std::sqrt(variance);
   result.singular_values = values.cwiseMax(0.0).cwiseSqrt().reverse();
   result.standard_deviations = Vector::Zero(n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -55,12 +56,34 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
     }
   }
   result.standard_deviations = result.standard_deviations.cwiseSqrt();
-  if (n > 0) result.weakest = eigen.eigenvectors().col(0);
+  result.directions = eigen.eigenvectors().rowwise().reverse();
+  Matrix covariance = Matrix::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (values[k] > noise)
+      covariance +=
+          variance / values[k] * eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose();
+  const Vector inverse = result.standard_deviations.cwiseInverse();
+  result.correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!std::isfinite(result.standard_deviations[i]))
+      result.correlation.row(i).setConstant(std::numeric_limits<double>::quiet_NaN()),
+          result.correlation.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   return result;
 }
 
-std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& what) {
-  const Identifiability id = identifiability(problem, x);
+std::map<std::string, std::vector<double>> identifiability_series(const Identifiability& id) {
+  const auto list = [](const auto& values) {
+    return std::vector<double>(values.data(), values.data() + values.size());
+  };
+  // Columns of `directions` lie one after the other; the correlation is symmetric.
+  return {{"singular_values", list(id.singular_values)},
+          {"directions", list(id.directions)},
+          {"standard_deviations", list(id.standard_deviations)},
+          {"correlation", list(id.correlation)},
+          {"residual_deviation", {id.residual_deviation}}};
+}
+
+std::string identifiability_note(const Problem& problem, const Identifiability& id, const std::string& what) {
   std::string list;
   const auto n = static_cast<Eigen::Index>(id.parameters.size());
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -2,7 +2,9 @@
 // numbers.
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "problems/problem.hpp"
 
@@ -15,16 +17,22 @@ struct Identifiability {
   Vector singular_values;      // of the Jacobian in q, largest first (n)
   Vector standard_deviations;  // relative, of each parameter in the problem's order (n); infinite when
                                // undetermined
-  Vector weakest;              // unit vector in q of the smallest singular value
+  Matrix directions;           // unit vectors in q, a column per singular value
+  Matrix correlation;  // cov(q)_ij / sqrt(cov_ii cov_jj) (n x n); not-a-number where a deviation is infinite
+  double residual_deviation = 0;         // sigma
   std::vector<Eigen::Index> parameters;  // index of each of the n free parameters
 };
 
 // Throws std::logic_error when the problem has no residuals.
 Identifiability identifiability(const Problem& problem, const ConstVectorRef& x);
 
+// The series of reports/record.hpp.
+std::map<std::string, std::vector<double>> identifiability_series(const Identifiability& identifiability);
+
 // One sentence: spread of the singular values and the parameters whose relative standard deviation exceeds
 // half the width of their box; "" when every parameter is determined better than its box.
 // `what` names the data and the point: "demo, at the result of lm".
-std::string identifiability_note(const Problem& problem, const ConstVectorRef& x, const std::string& what);
+std::string identifiability_note(const Problem& problem, const Identifiability& identifiability,
+                                 const std::string& what);
 
 }  // namespace odobench

@@ -66,7 +66,9 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
     describe_point(loaded, result.x, record);
     if (loaded.calibration) {
       const std::string what = fmt::format("{}, at the result of {}", record.dataset, record.label);
-      const std::string note = identifiability_note(loaded.problem, result.x, what);
+      const Identifiability id = identifiability(loaded.problem, result.x);
+      record.series = identifiability_series(id);
+      const std::string note = identifiability_note(loaded.problem, id, what);
       if (!note.empty()) record.notes.push_back(note);
     }
   }
@@ -108,6 +110,12 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
   return record;
 }
 
+void require_no_records(const std::filesystem::path& folder, bool overwrite) {
+  if (overwrite || !std::filesystem::exists(folder / "runs.jsonl")) return;
+  throw std::invalid_argument(fmt::format(
+      "--out={}: it holds runs.jsonl already; choose another folder or give --overwrite", folder.string()));
+}
+
 RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite) : path_(folder / "runs.jsonl") {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -117,9 +125,7 @@ RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite) : pa
   file_ =
       ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
   if (file_ >= 0) return;
-  if (errno == EEXIST)
-    throw std::invalid_argument(fmt::format(
-        "--out={}: it holds runs.jsonl already; choose another folder or give --overwrite", folder.string()));
+  if (errno == EEXIST) require_no_records(folder, overwrite);
   throw std::invalid_argument(
       fmt::format("--out={}: cannot write runs.jsonl there: {}", folder.string(), std::strerror(errno)));
 }

@@ -23,6 +23,9 @@ std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
 RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
                             const RunContext& context);
 
+// Throws std::invalid_argument when the folder holds runs already and they may not be replaced: before long work.
+void require_no_records(const std::filesystem::path& folder, bool overwrite);
+
 // DIR/runs.jsonl, appended to record by record: each is one write of a whole line, so that a process that is
 // killed leaves every record it completed.
 class RecordFile {

@@ -15,6 +15,7 @@
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/records.hpp"
+#include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/file_io.hpp"
 #include "reports/calibration_tables.hpp"
@@ -140,7 +141,10 @@ ExitCode run_command(const RunOptions& options) {
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const RunContext context = run_context(threads);
   std::unique_ptr<RecordFile> file;
-  if (!options.out.empty()) file = std::make_unique<RecordFile>(options.out, options.overwrite);
+  if (!options.out.empty()) {
+    file = std::make_unique<RecordFile>(options.out, options.overwrite);
+    remove_tracks(options.out);
+  }
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
 
@@ -160,6 +164,7 @@ ExitCode run_command(const RunOptions& options) {
 
   const std::vector<Table> tables = comparison_tables(records, notes_of_best(records));
   if (file) {
+    save_run_tracks(loaded, records, options.out);
     // Cells end in an order that depends on the threads; the finished file does not.
     if (!recorder.in_order()) write_in_order(file->path(), records);
     save_tables(tables, options.out);

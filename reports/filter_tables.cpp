@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace odobench {
@@ -131,6 +133,18 @@ std::optional<Table> track_table(const RunRecord& record) {
 }
 
 }  // namespace
+
+std::size_t gap_bin(double gap, double hamiltonian_exact) {
+  if (gap <= kSameOptimum * std::abs(hamiltonian_exact)) return 0;
+  const double place = std::floor(2 * std::log10(std::max(gap, kGapLowest) / kGapLowest));
+  return 1 + std::min(kGapBins - 2, static_cast<std::size_t>(place));
+}
+
+std::string gap_bin_name(std::size_t bin) {
+  if (bin == 0) return "0";
+  const auto edge = [](std::size_t k) { return kGapLowest * std::pow(10, static_cast<double>(k) / 2); };
+  return fmt::format("{:.2g} .. {:.2g}", edge(bin - 1), edge(bin));
+}
 
 std::vector<Table> filter_tables(const std::vector<RunRecord>& records) {
   if (records.empty()) return {};

@@ -8,6 +8,11 @@
 //   noise.CHANNEL.MEASURE.STAGE    CHANNEL encoder_component | encoder | ax | ay | theta, MEASURE rms | ratio | max,
 //                                  STAGE before | after | zero (after the filter without increments)
 //   track.end.STAGE, track.max.STAGE   m, distance of the dead-reckoned from the true position
+// and these series (see also kSignals and gap_bin_name):
+//   signal.width                          rows per bucket
+//   signal.SIGNAL.STAGE.min, .max         of every bucket; STAGE before | after | truth
+//   detail.SIGNAL.STAGE                   the first rows as they are
+//   gap_counts                            windows per bin of H_exact - H
 // What was not measured is absent. Errors e are against the truth; ratio = mean |e| / mean |truth|.
 #pragma once
 
@@ -35,8 +40,22 @@ inline constexpr std::array<NoiseChannel, 5> kNoiseChannels{{{"encoder_component
 inline constexpr std::array<const char*, 3> kNoiseMeasures{"rms", "ratio", "max"};
 inline constexpr std::array<const char*, 3> kNoiseStages{"before", "after", "zero"};
 
+// Signals of the figures: mean displacement of the wheels per sample, accelerations, rotation per sample.
+inline constexpr std::array<NoiseChannel, 4> kSignals{{{"encoder", "wheel displacement, mean of four", "m"},
+                                                       {"ax", "ax", "m/s^2"},
+                                                       {"ay", "ay", "m/s^2"},
+                                                       {"theta", "rotation", "deg"}}};
+inline constexpr std::array<const char*, 3> kSignalStages{"before", "after", "truth"};
+
 // A window counts as solved to the optimum when H_exact - H <= this * |H_exact|: what is above it is another t, not rounding.
 inline constexpr double kSameOptimum = 1e-9;
+
+// Bin 0: at the optimum. Bin k: from kGapLowest * 10^((k-1)/2) on, half a decade each.
+inline constexpr std::size_t kGapBins = 22;
+inline constexpr double kGapLowest = 1e-6;
+// Of a gap H_exact - H.
+std::size_t gap_bin(double gap, double hamiltonian_exact);
+std::string gap_bin_name(std::size_t bin);  // "0", "1e-06 .. 3.2e-06"
 
 //   filter         a row per record: windows, iterations, H, gain, gaps, speed
 //   noise.LABEL    a row per channel and measure

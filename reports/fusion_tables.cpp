@@ -82,9 +82,10 @@ Table innovation_table(const std::vector<FusionRow>& rows) {
 
 }  // namespace
 
-std::vector<Table> fusion_tables(const Table& sensors, const std::vector<RunRecord>& records,
+std::vector<Table> fusion_tables(const Table* sensors, const std::vector<RunRecord>& records,
                                  const std::vector<FusionRow>& rows) {
-  std::vector<Table> tables{sensors};
+  std::vector<Table> tables;
+  if (sensors != nullptr) tables.push_back(*sensors);
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (!rows.at(i).filtered) continue;
     const std::vector<RunRecord> one{records[i]};

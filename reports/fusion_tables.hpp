@@ -26,6 +26,7 @@ struct FusionRow {
   // Mean over the recordings at each instant, mean of that over the instants; part of the instants inside the band.
   double mean_nees = 0, inside = 0;
   double lower = 0, upper = 0;  // band of the mean over the recordings
+  std::vector<double> nees;     // that mean at each instant
   std::vector<FusionSensorRow> sensors;
   std::string verdict;
 };
@@ -35,8 +36,8 @@ struct FusionRow {
 // errors.TRAJ   tables 61-66: every label, difference to nominal odometry in brackets
 // totals        table 67
 // consistency   RMSE, NEES, verdict;   innovations: per sensor NIS, used, rejected, late
-// `records`: evaluations as of `bench evaluate`, one per label, "nominal" first.
-std::vector<Table> fusion_tables(const Table& sensors, const std::vector<RunRecord>& records,
+// `records`: evaluations as of `bench evaluate`, one per label, "nominal" first. `sensors` null: left out.
+std::vector<Table> fusion_tables(const Table* sensors, const std::vector<RunRecord>& records,
                                  const std::vector<FusionRow>& rows);
 
 }  // namespace odobench

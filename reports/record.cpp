@@ -70,7 +70,9 @@ json to_json(const RunContext& c) {
           {"build_type", c.build_type},
           {"git_revision", c.git_revision},
           {"version", c.version},
-          {"threads", c.threads}};
+          {"threads", c.threads},
+          {"command", c.command},
+          {"libraries", c.libraries}};
 }
 
 RunContext context_from(const JsonView& view) {
@@ -81,6 +83,8 @@ RunContext context_from(const JsonView& view) {
   c.git_revision = view.at("git_revision").string();
   c.version = view.at("version").string();
   c.threads = view.at("threads").small_integer();
+  if (const auto command = view.find("command")) c.command = command->string();
+  if (const auto libraries = view.find("libraries")) c.libraries = libraries->string();
   return c;
 }
 
@@ -132,6 +136,10 @@ void read_outcome(const JsonView& view, RunRecord& r) {
   if (const auto statistics = view.find("statistics"))
     statistics->each_field(
         [&](const std::string& key, const JsonView& value) { r.statistics[key] = value.number(); });
+  if (const auto series = view.find("series"))
+    series->each_field([&](const std::string& key, const JsonView& list) {
+      list.each_item([&](const JsonView& value) { r.series[key].push_back(value.number()); });
+    });
   r.context = context_from(view.at("context"));
   r.time_utc = view.at("time_utc").string();
 }
@@ -171,6 +179,11 @@ json to_json(const RunRecord& r) {
   for (const auto& [key, value] : r.options) out["options"][key] = value;
   if (!r.group.empty()) out["group"] = r.group;
   for (const auto& [key, value] : r.statistics) out["statistics"][key] = finite_or_null(value);
+  for (const auto& [key, values] : r.series) {
+    json list = json::array();
+    for (const double value : values) list.push_back(finite_or_null(value));
+    out["series"][key] = std::move(list);
+  }
   return out;
 }
 

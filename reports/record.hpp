@@ -44,6 +44,8 @@ struct RunContext {
   std::string git_revision;
   std::string version;
   int threads = 1;
+  std::string command;    // the command line, "" when it is not known
+  std::string libraries;  // versions of the solvers' libraries
 };
 
 struct RunRecord {
@@ -76,10 +78,23 @@ struct RunRecord {
   std::string group;  // of data sets with groups: the one that this member is in
   // Figures beyond cost and errors by name; reports/filter_tables.hpp and reports/window_tables.hpp say which.
   std::map<std::string, double> statistics;
+  // Lists of figures by name: kIdentifiabilitySeries below, those of reports/filter_tables.hpp and
+  // reports/fusion_tables.hpp. What is not finite is stored as null and read as not-a-number.
+  std::map<std::string, std::vector<double>> series;
   std::vector<std::string> notes;  // remarks on this result, e.g. which parameters are barely determined
   RunContext context;
   std::string time_utc;  // ISO 8601 start of the run
 };
+
+// Series of a least-squares result with n free parameters (those whose bounds differ), in their order and relative to
+// |nominal| (half the box where nominal is 0):
+//   singular_values      of the Jacobian, largest first (n)
+//   directions           unit right singular vectors in the same order, one after the other (n * n)
+//   standard_deviations  sqrt(J / (N - n) diag((J'J)^-1)) (n), null where the data say nothing
+//   correlation          of the parameters, row by row (n * n)
+//   residual_deviation   sqrt(J / (N - n)) (1)
+inline constexpr std::array<const char*, 5> kIdentifiabilitySeries{
+    "singular_values", "directions", "standard_deviations", "correlation", "residual_deviation"};
 
 // Doubles keep every bit, except that JSON has no word for what is not finite: it is written as null and read
 // as not-a-number (an optional cost: as absent).

@@ -1,0 +1,253 @@
+#include "reports/report_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "reports/calibration_tables.hpp"
+#include "reports/filter_figures.hpp"
+#include "reports/filter_tables.hpp"
+#include "reports/fusion_record.hpp"
+#include "reports/run_figures.hpp"
+#include "reports/table_parts.hpp"
+#include "reports/track_figures.hpp"
+#include "reports/vega.hpp"
+#include "reports/window_tables.hpp"
+
+namespace odobench {
+namespace {
+
+// Every kind of record has tables and figures of its own.
+struct Sorted {
+  std::vector<RunRecord> filters, windows, fusions, others;
+};
+
+Sorted sorted(const std::vector<RunRecord>& records) {
+  Sorted out;
+  for (const RunRecord& r : records)
+    (r.problem == kFilterProblem   ? out.filters
+     : r.problem == kWindowProblem ? out.windows
+     : r.problem == kFusionProblem ? out.fusions
+                                   : out.others)
+        .push_back(r);
+  return out;
+}
+
+std::vector<FusionRow> fusion_rows(const std::vector<RunRecord>& records) {
+  std::vector<FusionRow> rows;
+  for (const RunRecord& r : records) rows.push_back(fusion_row(r));
+  return rows;
+}
+
+void append(std::vector<Table> tables, Section& section) {
+  for (Table& table : tables) section.blocks.emplace_back(std::move(table));
+}
+void append(std::optional<Table> table, Section& section) {
+  if (table) section.blocks.emplace_back(std::move(*table));
+}
+
+std::string prefix_of(const Comparison& comparison) {
+  return comparison.id_prefix.empty() ? "" : vega::slug(comparison.problem + "-" + comparison.dataset) + ".";
+}
+
+// "40 runs of lm, ip, ga, pso on vitko2024"
+std::string description(const std::vector<RunRecord>& records) {
+  std::vector<std::string> labels, sets;
+  std::size_t runs = 0;
+  const auto add = [](const std::string& name, std::vector<std::string>& list) {
+    if (!name.empty() && std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  };
+  for (const RunRecord& r : records) {
+    if (r.kind == "run") ++runs;
+    add(r.label, labels);
+    // "FILE/ID" of windows: the file is enough here.
+    add(r.problem == kWindowProblem ? r.dataset.substr(0, r.dataset.find('/')) : r.dataset, sets);
+    if (r.dataset.empty()) add(r.problem, sets);
+  }
+  const auto list = [](const std::vector<std::string>& names, std::size_t most) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i > 0 ? ", " : "") + names[i];
+    return names.size() > most ? text + fmt::format(" and {} more", names.size() - most) : text;
+  };
+  return fmt::format("{}{} on {}", runs > 0 ? fmt::format("{} run{} of ", runs, runs == 1 ? "" : "s") : "",
+                     list(labels, 8), list(sets, 4));
+}
+
+std::string made(const std::vector<RunRecord>& records) {
+  std::string first;
+  for (const RunRecord& r : records)
+    if (!r.time_utc.empty()) first = first.empty() ? r.time_utc : std::min(first, r.time_utc);
+  const RunContext& c = records.front().context;
+  return fmt::format("{}, odobench {} (revision {}), {}", first, c.version, c.git_revision, c.cpu);
+}
+
+class Builder {
+ public:
+  explicit Builder(const ReportInput& input)
+      : input_(input), sorted_(sorted(input.records)), comparisons_(compare(sorted_.others)) {}
+
+  Document build() {
+    document_.title = input_.title.empty() ? description(input_.records) : input_.title;
+    document_.subtitle = made(input_.records);
+    summary();
+    errors();
+    trajectories();
+    convergence();
+    parameters();
+    identifiability();
+    filter();
+    windows();
+    fusion();
+    Section provenance{"provenance", "Provenance", "What the numbers depend on.", {}};
+    append(provenance_tables(input_.records), provenance);
+    finish(std::move(provenance));
+    return std::move(document_);
+  }
+
+ private:
+  void finish(Section section) {
+    if (!section.blocks.empty()) document_.sections.push_back(std::move(section));
+  }
+
+  void summary() {
+    Section section{"summary", "Summary", description(input_.records) + ".", {}};
+    for (const Comparison& c : comparisons_) {
+      const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
+                                   [](const ComparisonRow& r) { return r.kind != "evaluation"; });
+      section.blocks.emplace_back(ran ? solver_table(c) : cost_table(c));
+      append(totals_table(c), section);
+    }
+    if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables(sorted_.filters).front());
+    for (const Comparison& c : compare(sorted_.fusions)) append(totals_table(c), section);
+    if (!sorted_.fusions.empty() && !sorted_.fusions.front().notes.empty())
+      section.blocks.emplace_back(Paragraph{sorted_.fusions.front().notes.front() + "."});
+    for (const std::string& sentence : input_.absent) section.blocks.emplace_back(Paragraph{sentence});
+    finish(std::move(section));
+  }
+
+  void errors() {
+    Section section{
+        "errors",
+        "Errors",
+        "Per trajectory and variable: the largest error of the drives, their mean and standard deviation; in "
+        "brackets the difference to nominal.",
+        {}};
+    for (const Comparison& c : comparisons_) {
+      append(c.rows.size() == 1 ? std::vector<Table>{} : error_tables(c), section);
+      if (c.rows.size() == 1) append(error_overview(c), section);
+    }
+    finish(std::move(section));
+  }
+
+  // Of calibrations, or of the fusion.
+  void tracks_of(bool fusion, Section& section) {
+    for (std::size_t i = 0; i < input_.tracks.size(); ++i) {
+      const TrackSet& set = input_.tracks[i];
+      if ((set.problem == kFusionProblem) != fusion) continue;
+      const std::string prefix = input_.tracks.size() > 1 ? fmt::format("{}.", i + 1) : "";
+      add_track_figures(set, prefix, section, document_, kTrackRows / input_.tracks.size());
+    }
+  }
+
+  void trajectories() {
+    Section section{"trajectories",
+                    "Trajectories",
+                    "Where the robot was, and where odometry says it was with each result's parameters.",
+                    {}};
+    tracks_of(false, section);
+    finish(std::move(section));
+  }
+
+  void convergence() {
+    Section section{"convergence", "Convergence", "How fast each method gets how low.", {}};
+    for (const Comparison& c : comparisons_) {
+      add_convergence_figures(c, prefix_of(c), section, document_);
+      add_repeat_figure(c, prefix_of(c), section, document_);
+      append(repeats_table(c), section);
+    }
+    finish(std::move(section));
+  }
+
+  void parameters() {
+    Section section{"parameters", "Parameters", "What was found, against the bounds.", {}};
+    for (const Comparison& c : comparisons_) {
+      std::optional<Table> table = parameter_table(c);
+      if (!table) continue;
+      add_parameter_figure(c, prefix_of(c), section, document_);
+      table->notes.insert(table->notes.end(), input_.notes.begin(), input_.notes.end());
+      append(std::move(table), section);
+    }
+    finish(std::move(section));
+  }
+
+  void identifiability() {
+    Section section{"identifiability",
+                    "Identifiability",
+                    "Which combinations of parameters these recordings determine, and which they do not.",
+                    {}};
+    for (const Comparison& c : comparisons_) add_identifiability(c, prefix_of(c), section, document_);
+    finish(std::move(section));
+  }
+
+  void filter() {
+    Section section{"filter", "Relative-entropy filter", "Signals before and after the filter.", {}};
+    append(filter_tables(sorted_.filters), section);
+    for (std::size_t i = 0; i < sorted_.filters.size(); ++i)
+      add_filter_figures(sorted_.filters[i],
+                         sorted_.filters.size() > 1 ? fmt::format("filter{}.", i + 1) : "", section,
+                         document_);
+    finish(std::move(section));
+  }
+
+  void windows() {
+    Section section{
+        "windows", "Windows of the relative-entropy filter", "The same windows solved by each method.", {}};
+    add_window_figure(sorted_.windows, "", section, document_);
+    std::vector<Table> tables = window_tables(sorted_.windows, false);
+    std::reverse(tables.begin(), tables.end());  // the methods before the many windows
+    append(std::move(tables), section);
+    finish(std::move(section));
+  }
+
+  void fusion() {
+    Section section{"fusion", "Sensor fusion", "Odometry fused with a camera and a gyro.", {}};
+    if (sorted_.fusions.empty()) return;
+    for (const std::string& note : sorted_.fusions.front().notes)
+      section.blocks.emplace_back(Paragraph{note});
+    const std::vector<FusionRow> rows = fusion_rows(sorted_.fusions);
+    append(fusion_tables(nullptr, sorted_.fusions, rows), section);
+    add_consistency_figures(rows, "", section, document_);
+    tracks_of(true, section);
+    finish(std::move(section));
+  }
+
+  const ReportInput& input_;
+  const Sorted sorted_;
+  const std::vector<Comparison> comparisons_;
+  Document document_;
+};
+
+}  // namespace
+
+Document make_report(const ReportInput& input) {
+  return Builder(input).build();
+}
+
+std::vector<Table> record_tables(const std::vector<RunRecord>& records, const std::vector<std::string>& notes,
+                                 bool full_digits) {
+  const Sorted kinds = sorted(records);
+  std::vector<Table> tables;
+  const auto add = [&](std::vector<Table> more) {
+    for (Table& table : more) tables.push_back(std::move(table));
+  };
+  if (!kinds.others.empty()) add(comparison_tables(kinds.others, notes));
+  add(filter_tables(kinds.filters));
+  add(window_tables(kinds.windows, full_digits));
+  if (!kinds.fusions.empty()) add(fusion_tables(nullptr, kinds.fusions, fusion_rows(kinds.fusions)));
+  return tables;
+}
+
+}  // namespace odobench

@@ -1,0 +1,250 @@
+#include "reports/track_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "reports/decimate.hpp"
+#include "reports/vega.hpp"
+
+namespace odobench {
+namespace {
+
+using vega::json;
+
+constexpr const char* kReference = "motion capture";
+constexpr double kPathResolution = 1200, kErrorResolution = 300;  // parts of a range
+
+using Columns = std::array<std::vector<double>, 3>;  // x, y, theta
+
+std::span<const double> part(const std::vector<double>& values, const TrackRecording& recording) {
+  return std::span(values).subspan(recording.begin, recording.samples);
+}
+
+Columns pose_of(const PoseColumns& pose, const TrackRecording& r) {
+  const auto copy = [&](const std::vector<double>& v) {
+    const auto s = part(v, r);
+    return std::vector<double>(s.begin(), s.end());
+  };
+  return {copy(pose.x), copy(pose.y), copy(pose.theta)};
+}
+
+// One curve of a trajectory: a method (0: the reference) over a drive.
+struct Curve {
+  std::size_t series = 0;
+  int drive = 0;
+  std::span<const double> time;
+  Columns values;
+};
+
+struct Trajectory {
+  std::string name;
+  std::vector<int> drives;
+  std::vector<Curve> paths, errors;
+};
+
+Columns absolute_errors(const Columns& pose, const Columns& reference) {
+  Columns errors;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < pose[c].size(); ++k)
+      errors[c].push_back(std::abs(pose[c][k] - reference[c][k]));
+  return errors;
+}
+
+std::vector<Trajectory> trajectories_of(const TrackSet& set) {
+  std::vector<Trajectory> list;
+  for (const TrackRecording& r : set.recordings) {
+    auto at =
+        std::find_if(list.begin(), list.end(), [&](const Trajectory& t) { return t.name == r.trajectory; });
+    if (at == list.end()) at = list.insert(list.end(), {r.trajectory, {}, {}, {}});
+    at->drives.push_back(r.repetition);
+    const auto time = part(set.time_s, r);
+    const Columns reference = pose_of(set.reference, r);
+    at->paths.push_back({0, r.repetition, time, reference});
+    for (std::size_t i = 0; i < set.tracks.size(); ++i) {
+      Columns pose = pose_of(set.tracks[i].pose, r);
+      at->errors.push_back({i + 1, r.repetition, time, absolute_errors(pose, reference)});
+      at->paths.push_back({i + 1, r.repetition, time, std::move(pose)});
+    }
+  }
+  return list;
+}
+
+std::array<double, 3> ranges(const std::vector<Curve>& curves) {
+  std::array<double, 3> result{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Curve& curve : curves)
+      for (const double v : curve.values[c])
+        if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    result[c] = high > low ? high - low : 1;
+  }
+  return result;
+}
+
+struct Decimated {
+  std::string csv;
+  std::size_t rows = 0;
+};
+
+// Rows t,d,s,a,b,c: time, drive, series, the three values.
+Decimated decimated(const std::vector<Curve>& curves, double parts) {
+  const std::array<double, 3> range = ranges(curves);
+  Decimated out{"t,d,s,a,b,c\n", 0};
+  const auto text = std::back_inserter(out.csv);
+  for (const Curve& curve : curves) {
+    std::vector<DecimatedChannel> channels;
+    for (std::size_t c = 0; c < 3; ++c) channels.push_back({curve.values[c], range[c] / parts});
+    for (const std::size_t k : decimate(curve.time, channels)) {
+      fmt::format_to(text, "{:.6g},{},{},{:.6g},{:.6g},{:.6g}\n", curve.time[k], curve.drive, curve.series,
+                     curve.values[0][k], curve.values[1][k], curve.values[2][k]);
+      ++out.rows;
+    }
+  }
+  return out;
+}
+
+// All paths with the finest resolution that stays within the rows.
+std::vector<Decimated> paths_within(const std::vector<Trajectory>& list, std::size_t rows, double& parts) {
+  for (;; parts /= 1.3) {
+    std::vector<Decimated> all;
+    std::size_t sum = 0;
+    for (const Trajectory& t : list) sum += all.emplace_back(decimated(t.paths, parts)).rows;
+    if (sum <= rows || parts < 20) return all;
+  }
+}
+
+// Rows c,t,d,s,e: variable, time, drive, series, error. The noise of the reference does not let tolerances save much: a curve
+// that would need more than two rows per stretch is shown by the extremes of the stretches.
+std::string error_rows(const std::vector<Curve>& curves, std::size_t stretches) {
+  const std::array<double, 3> range = ranges(curves);
+  std::string csv = "c,t,d,s,e\n";
+  const auto text = std::back_inserter(csv);
+  for (const Curve& curve : curves)
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<std::size_t> kept = decimate(curve.time, {{curve.values[c], range[c] / kErrorResolution}});
+      if (kept.size() > 2 * stretches) kept = extremes(curve.values[c], stretches);
+      for (const std::size_t k : kept)
+        fmt::format_to(text, "{},{:.5g},{},{},{:.6g}\n", c, curve.time[k], curve.drive, curve.series,
+                       curve.values[c][k]);
+    }
+  return csv;
+}
+
+class Charts {
+ public:
+  Charts(const TrackSet& set, const Trajectory& trajectory) {
+    labels_.push_back(kReference);
+    for (const StoredTrack& track : set.tracks) labels_.push_back(track.label);
+    methods_.assign(labels_.begin() + 1, labels_.end());
+    choices_ = {vega::choice_of("method", "Method", "all methods", methods_), drive_choice(trajectory)};
+  }
+
+  json path(const std::string& data, const std::string& caption) const {
+    return specification(data, caption,
+                         {{"height", 380}, {"layer", layers("a", "x [m]", "b", "y [m]", true)}});
+  }
+
+  // x, y, heading over time.
+  json poses(const std::string& data, const std::string& caption) const {
+    const std::array<const char*, 3> columns{"a", "b", "c"}, titles{"x [m]", "y [m]", "heading [rad]"};
+    json views = json::array();
+    for (std::size_t c = 0; c < 3; ++c)
+      views.push_back({{"width", kFigureWidth},
+                       {"height", 150},
+                       {"layer", layers("t", time_title(c), columns[c], titles[c], true)}});
+    return specification(data, caption, {{"vconcat", views}});
+  }
+
+  json errors(const std::string& data, const std::string& caption) const {
+    const std::array<const char*, 3> titles{"|e_x| [m]", "|e_y| [m]", "|e_heading| [rad]"};
+    json views = json::array();
+    for (std::size_t c = 0; c < 3; ++c)
+      views.push_back({{"width", kFigureWidth},
+                       {"height", 150},
+                       {"transform", {vega::filter(fmt::format("datum.c == {}", c))}},
+                       {"layer", layers("t", time_title(c), "e", titles[c], false)}});
+    return specification(data, caption, {{"vconcat", views}});
+  }
+
+ private:
+  static const char* time_title(std::size_t panel) { return panel == 2 ? "time [s]" : ""; }
+
+  static vega::Choice drive_choice(const Trajectory& trajectory) {
+    vega::Choice choice{"drive", "Drive", {}, std::to_string(trajectory.drives.front())};
+    for (const int drive : trajectory.drives)
+      choice.options.emplace_back(std::to_string(drive), std::to_string(drive));
+    choice.options.emplace_back("all", fmt::format("all {}", trajectory.drives.size()));
+    return choice;
+  }
+
+  json specification(const std::string& data, const std::string& caption, json body) const {
+    body["transform"] = {vega::name_of("s", labels_, "label"),
+                         vega::filter("drive == 'all' || toString(datum.d) == drive"),
+                         vega::filter("datum.s == 0 || method == 'all' || datum.label == method")};
+    if (!body.contains("vconcat")) body["width"] = kFigureWidth;
+    return vega::specification(caption, vega::csv_data(data, {"t", "d", "s", "a", "b", "c", "e"}), choices_,
+                               body);
+  }
+
+  // The reference below, the methods above it.
+  json layers(const std::string& x, const std::string& x_title, const std::string& y,
+              const std::string& y_title, bool with_reference) const {
+    json encoding{{"x", vega::quantitative(x, x_title)},
+                  {"y", vega::quantitative(y, y_title)},
+                  {"order", {{"field", "t"}, {"type", "quantitative"}}},
+                  {"detail", {{{"field", "d"}, {"type", "nominal"}}}}};
+    json reference{{"transform", {vega::filter("datum.s == 0")}},
+                   {"mark", {{"type", "line"}, {"style", "reference"}}},
+                   {"encoding", encoding}};
+    encoding["color"] = vega::nominal("label", "", methods_);
+    json methods{
+        {"transform", {vega::filter("datum.s > 0")}}, {"mark", {{"type", "line"}}}, {"encoding", encoding}};
+    return with_reference ? json::array({reference, methods}) : json::array({methods});
+  }
+
+  std::vector<std::string> labels_, methods_;
+  std::vector<vega::Choice> choices_;
+};
+
+}  // namespace
+
+void add_track_figures(const TrackSet& set, const std::string& prefix, Section& section, Document& document,
+                       std::size_t rows) {
+  const std::vector<Trajectory> list = trajectories_of(set);
+  double parts = kPathResolution;
+  std::vector<Decimated> paths = paths_within(list, rows, parts);
+  const std::size_t curves = std::max<std::size_t>(1, set.recordings.size() * set.tracks.size());
+  const std::size_t stretches = std::max<std::size_t>(10, 3 * rows / (6 * curves));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Trajectory& t = list[i];
+    const Charts charts(set, t);
+    const std::string name = vega::slug(t.name);
+    const std::string path_data = prefix + "tracks." + name, error_data = prefix + "errors." + name;
+    document.datasets[path_data] = std::move(paths[i].csv);
+    document.datasets[error_data] = error_rows(t.errors, stretches);
+    const std::string thinned = fmt::format("Curves are thinned to within 1/{:.0f} of the range.", parts);
+    const auto add = [&](const std::string& kind, const std::string& title, const std::string& caption,
+                         json spec) {
+      section.blocks.push_back(
+          Figure{prefix + kind + "." + name, t.name + ": " + title, caption, std::move(spec)});
+    };
+    std::string caption = "Position y over x in metres; dashed: motion capture. " + thinned;
+    add("path", "path", caption, charts.path(path_data, caption));
+    caption = "Position in metres and heading in radians; dashed: motion capture. " + thinned;
+    add("pose", "x, y and heading over time", caption, charts.poses(path_data, caption));
+    caption = fmt::format(
+        "Distance from motion capture in x, y [m] and heading [rad]. Of longer curves the smallest and the "
+        "largest value of "
+        "each of {} stretches is drawn: no extreme is hidden.",
+        stretches);
+    add("error", "absolute errors over time", caption, charts.errors(error_data, caption));
+  }
+}
+
+}  // namespace odobench
