@@ -10,9 +10,6 @@
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
 #include "reports/baseline.hpp"
-#include "reports/calibration_tables.hpp"
-#include "reports/filter_tables.hpp"
-#include "reports/window_tables.hpp"
 
 namespace odobench {
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
@@ -28,22 +25,6 @@ std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
   return records;
 }
 
-namespace {
-
-// Every kind of record has tables of its own.
-std::vector<Table> record_tables(const std::vector<RunRecord>& records, bool full_digits) {
-  std::vector<RunRecord> filters, windows, others;
-  for (const RunRecord& r : records)
-    (r.problem == kFilterProblem ? filters : r.problem == kWindowProblem ? windows : others).push_back(r);
-  std::vector<Table> tables;
-  if (!others.empty()) tables = comparison_tables(others, notes_of_best(others));
-  for (Table& table : filter_tables(filters)) tables.push_back(std::move(table));
-  for (Table& table : window_tables(windows, full_digits)) tables.push_back(std::move(table));
-  return tables;
-}
-
-}  // namespace
-
 ExitCode check_command(const CheckOptions& options) {
   const Format format = parse_format(options.format);
   const std::vector<RunRecord> records = read_all_records(options.runs);
@@ -58,13 +39,6 @@ ExitCode check_command(const CheckOptions& options) {
   const BaselineReport report = check_baseline(read_baseline(options.baseline), records);
   print_tables({report.table}, format);
   return report.passed ? ExitCode::Success : ExitCode::CheckFailed;
-}
-
-ExitCode report_command(const ReportOptions& options) {
-  const Format format = parse_format(options.format);
-  const std::vector<RunRecord> records = read_all_records(options.runs);
-  print_tables(record_tables(records, format == Format::Json || format == Format::Csv), format);
-  return ExitCode::Success;
 }
 
 }  // namespace odobench

@@ -1,4 +1,4 @@
-// `bench check` and `bench report`: what stored records say, without running anything.
+// `bench check`: what moved in stored records, without running anything.
 #pragma once
 
 #include "bench/command_options.hpp"
@@ -14,7 +14,5 @@ std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs);
 // Prints what moved against the baseline; CheckFailed when something did. With `update` writes the baseline
 // instead, keeping the tolerances of the one that is there.
 ExitCode check_command(const CheckOptions& options);
-
-ExitCode report_command(const ReportOptions& options);
 
 }  // namespace odobench

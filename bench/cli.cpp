@@ -18,6 +18,7 @@
 #include "bench/list_command.hpp"
 #include "bench/number_text.hpp"
 #include "bench/plan_command.hpp"
+#include "bench/report_command.hpp"
 #include "bench/run_arguments.hpp"
 #include "bench/run_command.hpp"
 #include "bench/simulate_command.hpp"
@@ -67,6 +68,7 @@ struct Arguments {
   VerifyOptions verify;
   CheckOptions check;
   ReportOptions report;
+  ExportOptions exporting;
   FusionArguments fusion;
 };
 
@@ -88,7 +90,9 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
       ->add_option("--tracks", a.evaluate.tracks,
                    "write the paths that the parameters give as CSV, for plots")
       ->type_name("FILE.CSV");
-  evaluate->add_flag("--overwrite", a.evaluate.overwrite, "replace a file of --tracks that is there");
+  evaluate->add_option("--out", a.evaluate.out, "keep records, tables and tracks in this folder")
+      ->type_name("DIR");
+  evaluate->add_flag("--overwrite", a.evaluate.overwrite, "replace what --tracks or --out find there");
   add_format(*evaluate, a.evaluate.format);
 
   CLI::App* list = app.add_subcommand("list", "solvers with their options, problems, data sets, scenarios");
@@ -96,9 +100,25 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
   list->add_option("set", a.list.data, "with data or scenarios: the one to describe [known places]");
   add_format(*list, a.list.format);
 
-  CLI::App* report = app.add_subcommand("report", "tables of stored runs");
+  CLI::App* report = app.add_subcommand(
+      "report", "stored runs as tables, as one HTML page, or as figures; nothing is solved again");
+  report->add_option("--out", a.report.out, "write one self-contained page that needs no network")
+      ->type_name("FILE.HTML");
+  report->add_option("--figures", a.report.figures, "write every figure as an SVG file into this folder")
+      ->type_name("DIR");
+  report->add_option("--title", a.report.title, "of the page [what was run]")->type_name("TEXT");
   report->add_option("runs", a.report.runs, "folders with runs.jsonl, or .jsonl files")->required();
   add_format(*report, a.report.format);
+
+  CLI::App* exporting = app.add_subcommand("export", "trajectories of a run directory for other programs");
+  exporting->add_option("run", a.exporting.run, "folder of a run with --out")->required();
+  exporting->add_flag("--tum", a.exporting.tum,
+                      "the TUM format that evo and others read: time x y z qx qy qz qw");
+  exporting
+      ->add_option("--out", a.exporting.out, "folder to write: LABEL/RECORDING.tum, reference/RECORDING.tum")
+      ->required()
+      ->type_name("DIR");
+  exporting->add_flag("--overwrite", a.exporting.overwrite, "replace files that are there");
 
   CLI::App* check =
       app.add_subcommand("check", "compare stored runs with a baseline; exit code 1 when something moved");
@@ -113,6 +133,7 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
   return {{evaluate, [&a] { return evaluate_command(a.evaluate); }},
           {list, [&a] { return list_command(a.list); }},
           {report, [&a] { return report_command(a.report); }},
+          {exporting, [&a] { return export_command(a.exporting); }},
           {check, [&a] { return check_command(a.check); }}};
 }
 

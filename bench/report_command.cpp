@@ -1,0 +1,110 @@
+#include "bench/report_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
+#include "bench/check_command.hpp"
+#include "bench/figure_files.hpp"
+#include "bench/records.hpp"
+#include "bench/table_output.hpp"
+#include "datasets/error.hpp"
+#include "datasets/file_io.hpp"
+#include "reports/report_document.hpp"
+#include "reports/vega.hpp"
+
+namespace odobench {
+namespace {
+
+namespace fs = std::filesystem;
+
+ReportInput report_input(const ReportOptions& options, const std::vector<RunRecord>& records) {
+  ReportInput input;
+  input.records = records;
+  input.title = options.title;
+  input.notes = notes_of_best(records);
+  for (const std::string& run : options.runs) {
+    const fs::path folder = fs::is_directory(run) ? fs::path(run) : fs::path(run).parent_path();
+    if (std::optional<TrackSet> tracks = read_tracks(folder)) input.tracks.push_back(std::move(*tracks));
+  }
+  bool drives = false;
+  for (const RunRecord& r : records) drives = drives || !r.errors.empty();
+  if (drives && input.tracks.empty())
+    input.absent.push_back(
+        "The run directory holds no tracks, so there are no figures of the driven paths: they are stored "
+        "when a run with "
+        "--out ends.");
+  return input;
+}
+
+// A name that is no other label's: "pso[swarm=60]" -> "pso-swarm-60-".
+std::string folder_name(const std::string& label, std::set<std::string>& taken) {
+  const std::string base = vega::slug(label);
+  std::string name = base;
+  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", base, i);
+  return name;
+}
+
+std::string tum_text(const TrackSet& set, const TrackRecording& recording, const PoseColumns& pose) {
+  std::string text;
+  for (std::size_t k = recording.begin; k < recording.begin + recording.samples; ++k)
+    fmt::format_to(std::back_inserter(text), "{} {} {} 0 0 0 {} {}\n", set.time_s[k], pose.x[k], pose.y[k],
+                   std::sin(pose.theta[k] / 2), std::cos(pose.theta[k] / 2));
+  return text;
+}
+
+}  // namespace
+
+ExitCode report_command(const ReportOptions& options) {
+  const Format format = parse_format(options.format);
+  const std::vector<RunRecord> records = read_all_records(options.runs);
+  if (options.out.empty() && options.figures.empty()) {
+    print_tables(
+        record_tables(records, notes_of_best(records), format == Format::Json || format == Format::Csv),
+        format);
+    return ExitCode::Success;
+  }
+  const Document document = make_report(report_input(options, records));
+  if (!options.out.empty()) {
+    write_file(options.out, render_html(document));
+    note(fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
+                     document.sections.size()));
+  }
+  if (!options.figures.empty()) {
+    write_figures(document, options.figures);
+    note(fmt::format("{}: {} figures", options.figures, figures(document).size()));
+  }
+  return ExitCode::Success;
+}
+
+ExitCode export_command(const ExportOptions& options) {
+  if (!options.tum) throw std::invalid_argument("export: say in which format; --tum is the one there is");
+  const std::optional<TrackSet> set = read_tracks(options.run);
+  if (!set)
+    throw DataError(fmt::format(
+        "{}: no tracks/tracks.json; runs of 'bench run', 'evaluate' and 'fuse' with --out have one",
+        options.run));
+  const fs::path out = options.out;
+  if (fs::exists(out) && !options.overwrite)
+    throw std::invalid_argument(
+        fmt::format("--out={}: it exists; choose another name or give --overwrite", options.out));
+  FileTransaction transaction;
+  std::set<std::string> taken;
+  const auto add = [&](const std::string& label, const PoseColumns& pose) {
+    const std::string folder = folder_name(label, taken);
+    for (const TrackRecording& r : set->recordings)
+      transaction.add(out / folder / (vega::slug(r.id) + ".tum"), tum_text(*set, r, pose));
+  };
+  add("reference", set->reference);
+  for (const StoredTrack& track : set->tracks) add(track.label, track.pose);
+  transaction.commit();
+  note(fmt::format("{}: {} trajectories of {} recordings", options.out, set->tracks.size() + 1,
+                   set->recordings.size()));
+  return ExitCode::Success;
+}
+
+}  // namespace odobench
