@@ -19,6 +19,8 @@ constexpr int kGridPoints = 90;
 // What a logarithmic axis shows of a gap of zero.
 constexpr double kSmallestGap = 1e-12;
 
+constexpr const char* kCostTitle = "J, or J above the best";
+
 using Effort = std::function<double(const TracePoint&)>;
 
 std::vector<const ComparisonRow*> rows_with_traces(const Comparison& comparison) {
@@ -94,9 +96,9 @@ json convergence_spec(const std::string& data, const std::string& caption, const
   const vega::Choice quantity{"quantity", "Show", {{"gap", "J above the best"}, {"cost", "J"}}, "gap"};
   vega::Choice method = vega::choice_of("method", "Method", "all methods", labels);
   json x = vega::logarithmic("n", effort);
-  const json color = vega::nominal("label", "", labels);
+  const json color = vega::line_color("label", labels);
   const auto area = [&](const char* low, const char* high, double opacity) {
-    json y = vega::logarithmic(low, "");
+    json y = vega::logarithmic(low, kCostTitle);
     return json{{"mark", {{"type", "area"}, {"interpolate", "step-after"}, {"opacity", opacity}}},
                 {"encoding", {{"x", x}, {"y", y}, {"y2", {{"field", high}}}, {"color", color}}}};
   };
@@ -105,7 +107,7 @@ json convergence_spec(const std::string& data, const std::string& caption, const
     layer.push_back(area("min", "max", 0.12));
     layer.push_back(area("q1", "q3", 0.25));
   }
-  json y = vega::logarithmic("median", "J, or J above the best");
+  json y = vega::logarithmic("median", kCostTitle);
   layer.push_back({{"mark", {{"type", "line"}, {"interpolate", "step-after"}}},
                    {"encoding", {{"x", x}, {"y", y}, {"color", color}}}});
   return vega::specification(caption, vega::csv_data(data, {"s", "n", "min", "q1", "median", "q3", "max"}),

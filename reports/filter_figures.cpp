@@ -70,7 +70,7 @@ void add_bands(const RunRecord& record, const std::string& prefix, Section& sect
                           {{"x", x},
                            {"y", y},
                            {"y2", {{"field", "max"}}},
-                           {"color", vega::nominal("stage", "", stage_names())}}}}});
+                           {"color", vega::line_color("stage", stage_names())}}}}});
   };
   const vega::Choice stage = vega::choice_of("stage", "Signal", "all", stage_names());
   section.blocks.push_back(Figure{
@@ -100,7 +100,7 @@ void add_detail(const RunRecord& record, const std::string& prefix, Section& sec
                          {"encoding",
                           {{"x", vega::quantitative("row", x_title)},
                            {"y", vega::quantitative("value", panel_title(signal))},
-                           {"color", vega::nominal("stage", "", stage_names())}}}}});
+                           {"color", vega::line_color("stage", stage_names())}}}}});
   };
   const vega::Choice stage = vega::choice_of("stage", "Signal", "all", stage_names());
   section.blocks.push_back(
@@ -219,7 +219,7 @@ void add_consistency_figures(const std::vector<FusionRow>& rows, const std::stri
       {"transform", {vega::filter("method == 'all' || datum.label == method")}},
       {"mark", {{"type", "line"}}},
       {"encoding",
-       {{"x", x}, {"y", vega::logarithmic("nees", "NEES")}, {"color", vega::nominal("label", "", labels)}}}};
+       {{"x", x}, {"y", vega::logarithmic("nees", "NEES")}, {"color", vega::line_color("label", labels)}}}};
   section.blocks.push_back(Figure{
       nees_id, "Consistency over the drive (NEES)", nees_caption,
       vega::specification(nees_caption, vega::csv_data(nees_id, {"s", "percent", "nees", "lower", "upper"}),

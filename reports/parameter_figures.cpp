@@ -40,14 +40,22 @@ const RunRecord* best_described(const Comparison& comparison) {
   return best;
 }
 
-double box_edge(const Comparison& comparison) {
-  double edge = 0;
-  for (const ComparisonRow& row : comparison.rows)
-    for (const ParameterValue& p : row.shown->parameters)
-      edge = std::max({edge, std::abs(p.upper - p.nominal) / scale_of(p),
-                       std::abs(p.lower - p.nominal) / scale_of(p),
-                       std::abs(p.value - p.nominal) / scale_of(p)});
-  return 100 * 1.1 * edge;
+// Of the plot, %: all bounds and values, and the confidence intervals unless they are far wider than the box.
+double plot_edge(const Comparison& comparison) {
+  double box = 0, interval = 0;
+  for (const ComparisonRow& row : comparison.rows) {
+    const std::vector<const ParameterValue*> parameters = free_parameters(*row.shown);
+    const std::vector<double>* sigmas = series_of(*row.shown, "standard_deviations", parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const ParameterValue& p = *parameters[i];
+      const double value = std::abs(p.value - p.nominal) / scale_of(p);
+      box = std::max({box, std::abs(p.upper - p.nominal) / scale_of(p),
+                      std::abs(p.lower - p.nominal) / scale_of(p), value});
+      if (sigmas != nullptr && std::isfinite((*sigmas)[i]))
+        interval = std::max(interval, value + 1.96 * (*sigmas)[i]);
+    }
+  }
+  return 100 * std::max(1.1 * box, std::min(1.02 * interval, 5 * box));
 }
 
 // Direction as text: its parts of at least a quarter of the largest, largest first.
@@ -148,7 +156,7 @@ void add_parameter_figure(const Comparison& comparison, const std::string& prefi
       "this parameter.";
   document.datasets[id] = csv;
   section.blocks.push_back(Figure{id, "Parameters against their bounds" + comparison.title_suffix, caption,
-                                  parameter_spec(id, caption, names, labels, box_edge(comparison))});
+                                  parameter_spec(id, caption, names, labels, plot_edge(comparison))});
 }
 
 std::optional<Table> weak_directions(const RunRecord& record) {

@@ -62,7 +62,7 @@ std::string description(const std::vector<RunRecord>& records) {
   };
   for (const RunRecord& r : records) {
     if (r.kind == "run") ++runs;
-    add(r.label, labels);
+    if (r.label != "nominal") add(r.label, labels);
     // "FILE/ID" of windows: the file is enough here.
     add(r.problem == kWindowProblem ? r.dataset.substr(0, r.dataset.find('/')) : r.dataset, sets);
     if (r.dataset.empty()) add(r.problem, sets);
@@ -82,6 +82,36 @@ std::string made(const std::vector<RunRecord>& records) {
     if (!r.time_utc.empty()) first = first.empty() ? r.time_utc : std::min(first, r.time_utc);
   const RunContext& c = records.front().context;
   return fmt::format("{}, odobench {} (revision {}), {}", first, c.version, c.git_revision, c.cpu);
+}
+
+// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %)."
+std::string headline(const Comparison& comparison) {
+  const ComparisonRow* best = nullptr;
+  for (const ComparisonRow& row : comparison.rows)
+    if (row.label != "nominal" && row.shown->cost &&
+        (best == nullptr || *row.shown->cost < *best->shown->cost))
+      best = &row;
+  if (best == nullptr) return "";
+  const ComparisonRow* nominal = comparison.nominal();
+  std::string text =
+      fmt::format("Lowest J{}: {:.10g} by {}", comparison.title_suffix, *best->shown->cost, best->label);
+  if (nominal == nullptr || !nominal->shown->cost) return text + ".";
+  text += fmt::format("; nominal {:.10g}.", *nominal->shown->cost);
+  if (best->errors.empty() || best->errors.size() != nominal->errors.size()) return text;
+  const double total = error_totals(best->errors).total, before = error_totals(nominal->errors).total;
+  return text + fmt::format(" Its total error is {:.6f}, nominal {:.6f} ({:+.2f} %).", total, before,
+                            100 * (total - before) / before);
+}
+
+// The table without the columns of these ids.
+Table without(Table table, const std::set<std::string>& ids) {
+  for (std::size_t c = table.columns.size(); c-- > 0;) {
+    if (ids.count(table.columns[c].id) == 0) continue;
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    table.columns.erase(table.columns.begin() + at);
+    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
+  }
+  return table;
 }
 
 class Builder {
@@ -117,7 +147,9 @@ class Builder {
     for (const Comparison& c : comparisons_) {
       const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
                                    [](const ComparisonRow& r) { return r.kind != "evaluation"; });
-      section.blocks.emplace_back(ran ? solver_table(c) : cost_table(c));
+      if (const std::string text = headline(c); !text.empty()) section.blocks.emplace_back(Paragraph{text});
+      section.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
+                                      : cost_table(c));
       append(totals_table(c), section);
     }
     if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables(sorted_.filters).front());

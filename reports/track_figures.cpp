@@ -18,6 +18,7 @@ namespace {
 using vega::json;
 
 constexpr const char* kReference = "motion capture";
+constexpr double kSquareWidth = 440;                              // px, where both axes have one scale
 constexpr double kPathResolution = 1200, kErrorResolution = 300;  // parts of a range
 
 using Columns = std::array<std::vector<double>, 3>;  // x, y, theta
@@ -109,14 +110,34 @@ Decimated decimated(const std::vector<Curve>& curves, double parts) {
   return out;
 }
 
-// All paths with the finest resolution that stays within the rows.
-std::vector<Decimated> paths_within(const std::vector<Trajectory>& list, std::size_t rows, double& parts) {
-  for (;; parts /= 1.3) {
-    std::vector<Decimated> all;
-    std::size_t sum = 0;
-    for (const Trajectory& t : list) sum += all.emplace_back(decimated(t.paths, parts)).rows;
-    if (sum <= rows || parts < 20) return all;
+// With the finest resolution that stays within the rows.
+Decimated path_within(const std::vector<Curve>& paths, std::size_t rows, double& parts) {
+  for (parts = kPathResolution;; parts /= 1.3) {
+    Decimated path = decimated(paths, parts);
+    if (path.rows <= rows || parts < 20) return path;
   }
+}
+
+// A plot of y over x with the same scale on both axes, where that is not too flat or too high to read.
+struct Frame {
+  std::array<double, 2> x{}, y{};  // domains
+  double aspect = 0;               // height / width; 0: each axis has a scale of its own
+};
+
+Frame frame_of(const std::vector<Curve>& paths) {
+  std::array<std::array<double, 2>, 2> domain{{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
+  for (const Curve& curve : paths)
+    for (std::size_t c = 0; c < 2; ++c)
+      for (const double v : curve.values[c])
+        if (std::isfinite(v)) domain[c] = {std::min(domain[c][0], v), std::max(domain[c][1], v)};
+  Frame frame{domain[0], domain[1], 0};
+  const double width = frame.x[1] - frame.x[0], height = frame.y[1] - frame.y[0];
+  if (!(width > 0) || !(height > 0) || height < 0.3 * width || height > 1.6 * width) return frame;
+  const double margin = 0.03 * std::max(width, height);
+  frame.x = {frame.x[0] - margin, frame.x[1] + margin};
+  frame.y = {frame.y[0] - margin, frame.y[1] + margin};
+  frame.aspect = (height + 2 * margin) / (width + 2 * margin);
+  return frame;
 }
 
 // Rows c,t,d,s,e: variable, time, drive, series, error. The noise of the reference does not let tolerances save much: a curve
@@ -145,9 +166,18 @@ class Charts {
     choices_ = {vega::choice_of("method", "Method", "all methods", methods_), drive_choice(trajectory)};
   }
 
-  json path(const std::string& data, const std::string& caption) const {
-    return specification(data, caption,
-                         {{"height", 380}, {"layer", layers("a", "x [m]", "b", "y [m]", true)}});
+  json path(const std::string& data, const std::string& caption, const Frame& frame) const {
+    json spec =
+        specification(data, caption, {{"height", 380}, {"layer", layers("a", "x [m]", "b", "y [m]", true)}});
+    if (frame.aspect == 0) return spec;
+    spec["width"] = kSquareWidth;
+    spec["height"] = std::round(kSquareWidth * frame.aspect);
+    spec["usermeta"]["odobench"]["aspect"] = frame.aspect;
+    for (json& layer : spec["layer"]) {
+      layer["encoding"]["x"]["scale"] = {{"domain", frame.x}, {"nice", false}};
+      layer["encoding"]["y"]["scale"] = {{"domain", frame.y}, {"nice", false}};
+    }
+    return spec;
   }
 
   // x, y, heading over time.
@@ -202,7 +232,7 @@ class Charts {
     json reference{{"transform", {vega::filter("datum.s == 0")}},
                    {"mark", {{"type", "line"}, {"style", "reference"}}},
                    {"encoding", encoding}};
-    encoding["color"] = vega::nominal("label", "", methods_);
+    encoding["color"] = vega::line_color("label", methods_);
     json methods{
         {"transform", {vega::filter("datum.s > 0")}}, {"mark", {{"type", "line"}}}, {"encoding", encoding}};
     return with_reference ? json::array({reference, methods}) : json::array({methods});
@@ -217,16 +247,14 @@ class Charts {
 void add_track_figures(const TrackSet& set, const std::string& prefix, Section& section, Document& document,
                        std::size_t rows) {
   const std::vector<Trajectory> list = trajectories_of(set);
-  double parts = kPathResolution;
-  std::vector<Decimated> paths = paths_within(list, rows, parts);
   const std::size_t curves = std::max<std::size_t>(1, set.recordings.size() * set.tracks.size());
   const std::size_t stretches = std::max<std::size_t>(10, 3 * rows / (6 * curves));
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const Trajectory& t = list[i];
+  for (const Trajectory& t : list) {
     const Charts charts(set, t);
     const std::string name = vega::slug(t.name);
     const std::string path_data = prefix + "tracks." + name, error_data = prefix + "errors." + name;
-    document.datasets[path_data] = std::move(paths[i].csv);
+    double parts = 0;
+    document.datasets[path_data] = path_within(t.paths, rows / list.size(), parts).csv;
     document.datasets[error_data] = error_rows(t.errors, stretches);
     const std::string thinned = fmt::format("Curves are thinned to within 1/{:.0f} of the range.", parts);
     const auto add = [&](const std::string& kind, const std::string& title, const std::string& caption,
@@ -234,8 +262,11 @@ void add_track_figures(const TrackSet& set, const std::string& prefix, Section& 
       section.blocks.push_back(
           Figure{prefix + kind + "." + name, t.name + ": " + title, caption, std::move(spec)});
     };
-    std::string caption = "Position y over x in metres; dashed: motion capture. " + thinned;
-    add("path", "path", caption, charts.path(path_data, caption));
+    const Frame frame = frame_of(t.paths);
+    std::string caption =
+        fmt::format("Position y over x in metres{}; dashed: motion capture. {}",
+                    frame.aspect == 0 ? ", each axis with a scale of its own" : "", thinned);
+    add("path", "path", caption, charts.path(path_data, caption, frame));
     caption = "Position in metres and heading in radians; dashed: motion capture. " + thinned;
     add("pose", "x, y and heading over time", caption, charts.poses(path_data, caption));
     caption = fmt::format(

@@ -24,12 +24,25 @@ json quantitative(const std::string& field, const std::string& title) {
 }
 
 json logarithmic(const std::string& field, const std::string& title) {
-  return titled({{"field", field}, {"type", "quantitative"}, {"scale", {{"type", "log"}}}}, title);
+  return titled({{"field", field},
+                 {"type", "quantitative"},
+                 {"scale", {{"type", "log"}}},
+                 {"axis",
+                  {{"labelExpr",
+                    "datum.value < 0.001 || datum.value >= 100000 ? format(datum.value, '.0e') : "
+                    "format(datum.value, '~g')"}}}},
+                title);
 }
 
 json nominal(const std::string& field, const std::string& title, const std::vector<std::string>& domain) {
   return titled({{"field", field}, {"type", "nominal"}, {"sort", domain}, {"scale", {{"domain", domain}}}},
                 title);
+}
+
+json line_color(const std::string& field, const std::vector<std::string>& domain) {
+  json channel = nominal(field, "", domain);
+  channel["legend"] = {{"symbolType", "stroke"}, {"symbolOpacity", 1}, {"symbolStrokeWidth", 2.5}};
+  return channel;
 }
 
 json name_of(const std::string& index, const std::vector<std::string>& names, const std::string& as) {

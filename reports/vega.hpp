@@ -19,6 +19,9 @@ json logarithmic(const std::string& field, const std::string& title);
 // In the order given, not sorted.
 json nominal(const std::string& field, const std::string& title, const std::vector<std::string>& domain);
 
+// Colours of lines, named in the legend by a piece of line.
+json line_color(const std::string& field, const std::vector<std::string>& domain);
+
 // A transform that turns the number in `index` into one of the names.
 json name_of(const std::string& index, const std::vector<std::string>& names, const std::string& as);
 json filter(const std::string& expression);

@@ -282,7 +282,7 @@ TEST(Report, HasItsSectionsInOrder) {
   for (const Section& section : document.sections) ids.push_back(section.id);
   EXPECT_THAT(ids, ElementsAre("summary", "errors", "trajectories", "convergence", "parameters",
                                "identifiability", "provenance"));
-  EXPECT_EQ(document.title, "6 runs of nominal, lm, pso on demo");
+  EXPECT_EQ(document.title, "6 runs of lm, pso on demo");
 }
 
 TEST(Report, EveryFigureFindsItsDataAndHasAnIdOfItsOwn) {
