@@ -149,7 +149,8 @@ TEST(HtmlPage, FiguresAreDrawnOrSaidToBeMissing) {
   const std::string html = render_html(document);
   EXPECT_EQ(count(html, "<figure "), figures(document).size());
   EXPECT_EQ(count(html, "<table "), 3u);
-  EXPECT_EQ(count(html, "data-dataset=\""), has_chart_library() ? document.datasets.size() : 0u);
+  EXPECT_EQ(count(html, "<script type=\"application/json\" data-dataset=\""),
+            has_chart_library() ? document.datasets.size() : 0u);
   EXPECT_EQ(html.find("charts are missing") != std::string::npos, !has_chart_library());
   EXPECT_EQ(html.find("Redistribution and use in source and binary forms") != std::string::npos,
             has_chart_library());
