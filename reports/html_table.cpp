@@ -53,18 +53,24 @@ std::string header(const Table& table, const std::vector<ColumnLayout>& layout) 
   return out + "</tr></thead>\n";
 }
 
+// Numbers of people have a minus sign, not a hyphen; exponents keep theirs.
+std::string typeset(const std::string& number) {
+  return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
+}
+
 // The number or text, then bracket and mark in a field of the column's width.
 std::string cell_content(const Cell& cell, const ColumnLayout& column) {
   const CellText text = cell_text(cell);
-  std::string out = html_escape(text.head);
+  std::string out = html_escape(cell.value ? typeset(text.head) : text.head);
   if (cell.empty()) out = "<span class=\"none\">" + out + "</span>";
   if (column.tail == 0 || !column.number || (!cell.value && !cell.empty()))
     return text.tail.empty() ? out : out + " " + html_escape(text.tail);
   out += fmt::format("<span class=\"tail\" style=\"min-width:{}ch\">", column.tail);
   if (!text.tail.empty()) out += " ";
   if (cell.difference) {
-    const std::size_t end = text.tail.find(')') + 1;
-    out += fmt::format("<span class=\"change\">{}</span>", html_escape(text.tail.substr(0, end)));
+    const std::size_t end = text.tail.find(')') + 1;  // of "(-0.012345)"
+    out +=
+        fmt::format("<span class=\"change\">({}</span>", html_escape(typeset(text.tail.substr(1, end - 1))));
     out += html_escape(text.tail.substr(end));
   } else {
     out += html_escape(text.tail);

@@ -3,9 +3,8 @@
 (function () {
   'use strict';
   const theme = globalThis.odobenchTheme;
-  const printWidth = 660;      // px, of a sheet of A4 between its margins
-  const narrowestView = 250;   // px, of views side by side
-  const axisRoom = 70;         // px beside each view, a first guess
+  const printWidth = 660; // px, of a sheet of A4 between its margins
+  const axisRoom = 70;    // px beside each view, a first guess
 
   function element(tag, attributes = {}, ...children) {
     const made = document.createElement(tag);
@@ -123,7 +122,8 @@
       return spec;
     }
     const wanted = meta.columns ?? 4;
-    const columns = setColumns(spec, Math.max(1, Math.min(wanted, Math.floor(room / narrowestView))));
+    const narrowest = Math.max(150, Math.min(250, widestRow(spec, 1).width));
+    const columns = setColumns(spec, Math.max(1, Math.min(wanted, Math.floor(room / narrowest))));
     const row = widestRow(spec, columns);
     if (row.width > 0) {
       const free = room - row.count * axisRoom - (row.count - 1) * 24 - excess;
@@ -135,9 +135,12 @@
 
   // -- One view of a specification.
 
-  function makeView(spec, themeName, width, options) {
+  function makeView(spec, themeName, width, layout, options) {
     const logger = vega.logger(vega.Warn);
-    const compiled = vegaLite.compile(spec, {config: theme.config(themeName, width), logger}).spec;
+    const warn = logger.warn;
+    // It means selections, but says so for every parameter.
+    logger.warn = (...text) => (/^Selection not supported for/.test(text[0]) ? logger : warn.apply(logger, text));
+    const compiled = vegaLite.compile(spec, {config: theme.config(themeName, width, layout), logger}).spec;
     return new vega.View(vega.parse(compiled), {logLevel: vega.Warn, ...options});
   }
 
@@ -194,31 +197,38 @@
       this.drawn = `${themeName} ${Math.floor(room)}`;
       try {
         loadLibrary();
-        let excess = 0;
-        let view = null;
-        const height = this.place.offsetHeight;
-        this.place.style.minHeight = `${height}px`;
-        for (let attempt = 0; attempt < 2; ++attempt) {
-          view?.finalize();
-          const spec = fitted(standalone(this.spec), room - 2, excess);
-          this.place.replaceChildren();
-          view = makeView(spec, themeName, room, {
-            renderer: 'svg', container: this.place, hover: true, tooltip: (_, event, item, value) => tooltip.show(event, value),
-          });
-          for (const [name, value] of Object.entries(this.values)) view.signal(name, value);
-          await view.runAsync();
-          const natural = Number(this.place.querySelector('svg').getAttribute('width'));
-          if (spec.autosize || (natural <= room && natural > room - 24)) break;
-          excess = natural - (room - 4);
-        }
+        this.place.style.minHeight = `${this.place.offsetHeight}px`;
+        const view = await this.fit(themeName, room);
         this.view?.finalize();
         this.view = view;
-        this.place.style.minHeight = `${this.place.firstElementChild.offsetHeight}px`;
+        this.place.style.minHeight = `${this.place.querySelector('svg').getBoundingClientRect().height}px`;
         this.figure.dataset.state = 'drawn';
       } catch (error) {
         this.figure.dataset.state = 'failed';
         this.place.replaceChildren(element('p', {class: 'missing'}, `This chart cannot be drawn: ${error.message}`));
         console.error(`figure ${this.id}:`, error);
+      }
+    }
+
+    // Drawn anew where only a drawing tells how much room axes and names take.
+    async fit(themeName, room) {
+      let excess = 0;
+      let layout = theme.firstLayout;
+      for (let attempt = 1;; ++attempt) {
+        const spec = fitted(standalone(this.spec), room - 2, excess);
+        this.place.replaceChildren();
+        const view = makeView(spec, themeName, room, layout, {
+          renderer: 'svg', container: this.place, hover: true, tooltip: (_, event, item, value) => tooltip.show(event, value),
+        });
+        for (const [name, value] of Object.entries(this.values)) view.signal(name, value);
+        await view.runAsync();
+        const natural = Number(this.place.querySelector('svg').getAttribute('width'));
+        const better = theme.betterLayout(view, room, layout);
+        const fits = natural <= room && (spec.autosize || natural > room - 24);
+        if ((fits && !better) || attempt === 3) return view;
+        if (!fits && !better) excess += natural - (room - 4);
+        layout = better ?? layout;
+        view.finalize();
       }
     }
 
@@ -232,9 +242,15 @@
     // As the specification says, in the colours of print, with what the controls are set to.
     async forExport() {
       loadLibrary();
-      const view = makeView(standalone(this.spec), 'print', printWidth, {renderer: 'none'});
-      for (const [name, value] of Object.entries(this.values)) view.signal(name, value);
-      return view.runAsync();
+      let layout = theme.firstLayout;
+      for (;;) {
+        const view = makeView(standalone(this.spec), 'print', printWidth, layout, {renderer: 'none'});
+        for (const [name, value] of Object.entries(this.values)) view.signal(name, value);
+        await view.runAsync();
+        const better = theme.betterLayout(view, printWidth, layout);
+        if (!better) return view;
+        layout = better;
+      }
     }
   }
 

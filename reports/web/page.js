@@ -68,11 +68,27 @@
   // A table that fits needs no scrolling, hence no stop for the keyboard.
   function watchScrolling(wrapper) {
     const update = () => {
-      if (wrapper.scrollWidth > wrapper.clientWidth + 1) wrapper.setAttribute('tabindex', '0');
+      const hidden = wrapper.scrollWidth - wrapper.clientWidth;
+      if (hidden > 1) wrapper.setAttribute('tabindex', '0');
       else wrapper.removeAttribute('tabindex');
+      wrapper.classList.toggle('scrolled', wrapper.scrollLeft > 0);
+      wrapper.classList.toggle('more', wrapper.scrollLeft < hidden - 1);
     };
     new ResizeObserver(update).observe(wrapper);
-    wrapper.addEventListener('scroll', () => wrapper.classList.toggle('scrolled', wrapper.scrollLeft > 0), {passive: true});
+    wrapper.addEventListener('scroll', update, {passive: true});
+  }
+
+  // -- On paper nothing scrolls: differences go below their numbers where a table is too wide, then it is made smaller.
+
+  function fitToPaper(table) {
+    const paper = 670;  // px, of a sheet of A4 between its margins
+    table.classList.add('paper');
+    if (table.offsetWidth > paper) table.classList.add('stacked');
+    if (table.offsetWidth > paper) table.style.zoom = paper / table.offsetWidth;
+  }
+  function leavePaper(table) {
+    table.classList.remove('paper', 'stacked');
+    table.style.zoom = '';
   }
 
   // -- The section that begins above the middle of the window is the one being read.
@@ -110,4 +126,6 @@
   document.querySelectorAll('main table').forEach(makeSortable);
   document.querySelectorAll('main .scroll').forEach(watchScrolling);
   watchSections();
+  addEventListener('beforeprint', () => document.querySelectorAll('main table').forEach(fitToPaper));
+  addEventListener('afterprint', () => document.querySelectorAll('main table').forEach(leavePaper));
 })();

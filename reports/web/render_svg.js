@@ -24,14 +24,16 @@ function textWidth(item, text) {
 }
 vega.textMetrics.width = textWidth;
 
-async function draw(id, spec) {
+async function draw(spec) {
+  const width = 660;
   const logger = vega.logger(vega.Error);
-  const config = odobenchTheme.config('print', 660);
-  const view = new vega.View(vega.parse(vegaLite.compile(spec, {config, logger}).spec), {renderer: 'none', logLevel: vega.Error});
-  await view.runAsync();
+  let view = null;
+  for (let layout = odobenchTheme.firstLayout; layout; layout = odobenchTheme.betterLayout(view, width, layout)) {
+    const compiled = vegaLite.compile(spec, {config: odobenchTheme.config('print', width, layout), logger}).spec;
+    view = await new vega.View(vega.parse(compiled), {renderer: 'none', logLevel: vega.Error}).runAsync();
+  }
   const svg = await view.toSVG();
-  view.finalize();
-  if (svg.includes('NaN')) throw new Error(`figure ${id}: the drawing has coordinates that are not numbers`);
+  if (svg.includes('NaN')) throw new Error('the drawing has coordinates that are not numbers');
   return svg;
 }
 
@@ -42,7 +44,7 @@ async function main() {
     const file = path.join(folder, `${id}.svg`);
     const temporary = `${file}.${process.pid}.part`;
     try {
-      fs.writeFileSync(temporary, `${await draw(id, spec)}\n`);
+      fs.writeFileSync(temporary, `${await draw(spec)}\n`);
       fs.renameSync(temporary, file);
     } catch (error) {
       fs.rmSync(temporary, {force: true});

@@ -18,8 +18,12 @@
   const print = {...light, text: '#000000', muted: '#333333', line: '#555555', grid: '#e2e2e2'};
   const colours = {light, dark, print};
 
+  // What only a drawing can tell: whether names below a horizontal axis have to be tilted, how many entries of a legend fit side
+  // by side (0: all). A chart is drawn with `firstLayout`, and once more when betterLayout() knows a better one.
+  const firstLayout = {tilted: false, columns: 0};
+
   // The Vega-Lite configuration of a theme for a chart of `width` px.
-  function config(theme, width) {
+  function config(theme, width, layout = firstLayout) {
     const c = colours[theme];
     const loose = theme === 'print' ? 2 : 1;  // node only guesses how wide text is
     const text = {labelColor: c.muted, titleColor: c.text, labelFontSize: 12, titleFontSize: 12, titleFontWeight: 500};
@@ -42,8 +46,10 @@
       rule: {color: c.text, strokeWidth: 1},
       text: {color: c.text, fontSize: 12},
       errorband: {band: {fillOpacity: 0.22}},
-      errorbar: {ticks: true, rule: {strokeWidth: 1.5}},
-      boxplot: {box: {fillOpacity: 0.85}, median: {color: c.background, strokeWidth: 2}, outliers: {size: 22, filled: false}},
+      errorbar: {ticks: {size: 10, color: c.text}, rule: {strokeWidth: 1.5, color: c.text}},
+      boxplot: {
+        size: width < 500 ? 7 : 14, box: {fillOpacity: 0.85}, median: {color: c.background, strokeWidth: 2}, outliers: {size: 22, filled: false},
+      },
       range: {
         category: c.categories, ordinal: {scheme: 'viridis'}, ramp: {scheme: 'viridis'}, heatmap: {scheme: 'viridis'},
         diverging: {scheme: 'blueorange'},
@@ -52,9 +58,11 @@
         ...text, domainColor: c.line, tickColor: c.line, gridColor: c.grid, tickSize: 4, labelPadding: 4,
         titlePadding: 8, labelLimit: 220 * loose, titleLimit: 600 * loose,
       },
+      axisXDiscrete: {labelAngle: layout.tilted ? -40 : 0},
       legend: {
-        ...text, orient: 'top', direction: 'horizontal', columns: Math.max(1, Math.floor(width / 150)), columnPadding: 18,
-        labelLimit: Math.min(260, width) * loose, symbolType: 'circle', symbolStrokeWidth: 2.5, offset: 10, titlePadding: 8,
+        ...text, orient: 'top', titleOrient: 'left', direction: 'horizontal', columnPadding: 18,
+        ...(layout.columns > 0 ? {columns: layout.columns} : {}),
+        labelLimit: Math.min(260, width) * loose, symbolStrokeWidth: 2.5, symbolSize: 130, offset: 10, titlePadding: 8,
         gradientLength: Math.min(240, Math.max(120, width / 3)), gradientThickness: 10,
       },
       header: {...text, titleFontSize: 12, labelFontSize: 13, labelFontWeight: 500, labelColor: c.text, labelLimit: width * loose},
@@ -69,6 +77,45 @@
         muted: {stroke: c.line, strokeWidth: 1, opacity: 0.8},
       },
     };
+  }
+
+  function visit(item, use) {
+    use(item);
+    for (const child of item.items ?? []) visit(child, use);
+  }
+
+  function labelsCollide(axis) {
+    const boxes = axis.items.filter((label) => label.opacity > 0 && !label.angle).map((label) => label.bounds);
+    boxes.sort((a, b) => a.x1 - b.x1);
+    return boxes.some((box, k) => k > 0 && box.x1 < boxes[k - 1].x2 + 2 && Math.abs(box.y1 - boxes[k - 1].y1) < 2);
+  }
+
+  // How many entries of a legend that is wider than `width` fit side by side; 0 for one that fits.
+  function legendColumns(legend, width) {
+    let widest = 0;
+    let title = 0;
+    visit(legend, (mark) => {
+      for (const item of mark.items ?? []) {
+        if (mark.role === 'legend-label') widest = Math.max(widest, item.bounds.width());
+        if (mark.role === 'legend-title') title = Math.max(title, item.bounds.width());
+      }
+    });
+    if (widest === 0 || legend.bounds.width() <= width) return 0;
+    return Math.max(1, Math.floor((width - title - 10) / (widest + 40)));
+  }
+
+  // A better layout than the one that `view` was drawn with, or null.
+  function betterLayout(view, width, layout) {
+    const better = {...layout};
+    visit(view.scenegraph().root, (mark) => {
+      if (!layout.tilted && mark.role === 'axis-label' && labelsCollide(mark)) better.tilted = true;
+      if (layout.columns === 0 && mark.role === 'legend')
+        for (const legend of mark.items) {
+          const columns = legendColumns(legend, width);
+          if (columns > 0) better.columns = Math.min(columns, better.columns || columns);
+        }
+    });
+    return better.tilted === layout.tilted && better.columns === layout.columns ? null : better;
   }
 
   // The page's own choice: 'auto', 'light' or 'dark', kept where the browser lets a file keep anything.
@@ -94,7 +141,7 @@
     } catch { /* a browser that keeps nothing for files */ }
     apply(chosen);
   }
-  root.odobenchTheme = {config, colours, choice, choose, apply, current};
+  root.odobenchTheme = {config, colours, firstLayout, betterLayout, choice, choose, apply, current};
   if (root.document) {  // before the first paint
     apply(choice());
     root.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => apply(choice()));

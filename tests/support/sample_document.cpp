@@ -18,6 +18,25 @@ double noise(std::mt19937_64& random) {
   return (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * 2;
 }
 
+Column column(std::string id, std::string name, std::string unit = "", std::string group = "") {
+  Column made;
+  made.id = std::move(id);
+  made.name = std::move(name);
+  made.unit = std::move(unit);
+  made.group = std::move(group);
+  return made;
+}
+
+Column text_column(const std::string& id) {
+  Column made = column(id, id);
+  made.align = Align::Left;
+  return made;
+}
+
+Table table_of(std::string id, std::string title, std::vector<Column> columns) {
+  return {std::move(id), std::move(title), std::move(columns), {}, {}};
+}
+
 // Five repetitions of a drive and what each method makes of it.
 std::string tracks_csv(std::mt19937_64& random) {
   std::string out = "method,repetition,t,x,y\n";
@@ -195,12 +214,12 @@ Figure histogram_figure() {
 }
 
 Table errors_table(std::mt19937_64& random) {
-  Table table{
-      "errors.circle", "Errors on the circle", {{"method", "method", "", "", "", Align::Left}}, {}, {}};
-  for (const char* variable : {"x", "y", "theta"})
+  Table table = table_of("errors.circle", "Errors on the circle", {text_column("method")});
+  for (const std::string variable : {"x", "y", "theta"})
     for (const char* what : {"max", "sr", "sigma"})
-      table.columns.push_back({fmt::format("e_{}_{}", what, variable), fmt::format("e_{},{}", variable, what),
-                               variable == std::string("theta") ? "rad" : "m", "", variable});
+      table.columns.push_back(column(fmt::format("e_{}_{}", what, variable),
+                                     fmt::format("e_{},{}", variable, what),
+                                     variable == "theta" ? "rad" : "m", variable));
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
     std::vector<Cell> row{text_cell(kMethods[m])};
     for (int k = 0; k < 9; ++k) {
@@ -216,16 +235,10 @@ Table errors_table(std::mt19937_64& random) {
 }
 
 Table solvers_table() {
-  Table table{"solvers",
-              "Solvers",
-              {{"solver", "solver", "", "", "", Align::Left},
-               {"cost", "J", ""},
-               {"change", "change", "%"},
-               {"evaluations", "evaluations", ""},
-               {"time", "time", "s"},
-               {"stop", "stop", "", "", "", Align::Left}},
-              {},
-              {}};
+  Table table =
+      table_of("solvers", "Solvers",
+               {text_column("solver"), column("cost", "J"), column("change", "change", "%"),
+                column("evaluations", "evaluations"), column("time", "time", "s"), text_column("stop")});
   for (std::size_t m = 0; m < kMethods.size(); ++m)
     table.rows.push_back(
         {text_cell(kMethods[m]),
@@ -241,13 +254,9 @@ Table solvers_table() {
 
 Table sample_table() {
   const double infinity = std::numeric_limits<double>::infinity();
-  Table table{"hard <cells>",
-              "Cells that are \"hard\" & <b>not</b> markup",
-              {{"name", "name", "", "", "", Align::Left},
-               {"value", "v_max", "m<2>"},
-               {"note", "remark", "", "", "", Align::Left}},
-              {},
-              {"A note with <script>alert(1)</script> & co."}};
+  Table table = table_of("hard <cells>", "Cells that are \"hard\" & <b>not</b> markup",
+                         {text_column("name"), column("value", "v_max", "m<2>"), text_column("remark")});
+  table.notes = {"A note with <script>alert(1)</script> & co."};
   Cell marked = fixed_cell(118.125, 3);
   marked.difference = 5.625;
   marked.mark = "U";

@@ -1,0 +1,15 @@
+// The figures of a report as SVG files.
+#pragma once
+
+#include <filesystem>
+
+#include "reports/document.hpp"
+
+namespace odobench {
+
+// Writes FOLDER/ID.svg for every figure, in the colours of print and with what its parameters are set to; the folder is made if
+// there is none. Each file is complete or not there. All are drawn by one process of node with the chart library of this
+// binary. Throws std::runtime_error with one line when there is no node, no chart library, or a figure cannot be drawn.
+void write_figures(const Document& document, const std::filesystem::path& folder);
+
+}  // namespace odobench
