@@ -17,7 +17,7 @@ namespace odobench {
 // text in its place. Widths of views are for print (single view: kFigureWidth); a page replaces them by what there is.
 // What a reader may choose is a top-level parameter {"name", "value"} that the specification filters by, offered as
 //   "usermeta": {"odobench": {"columns": views side by side (default 1),
-//                             "aspect": height / width to keep (default: the height stays),
+//                             "aspect": "equal" to keep width : height (default: the height stays),
 //                             "controls": [{"param": "method", "label": "Method",
 //                                           "options": [{"value": "lm", "label": "lm"}, ..]}]}}
 struct Figure {

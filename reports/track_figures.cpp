@@ -172,7 +172,7 @@ class Charts {
     if (frame.aspect == 0) return spec;
     spec["width"] = kSquareWidth;
     spec["height"] = std::round(kSquareWidth * frame.aspect);
-    spec["usermeta"]["odobench"]["aspect"] = frame.aspect;
+    spec["usermeta"]["odobench"]["aspect"] = "equal";
     for (json& layer : spec["layer"]) {
       layer["encoding"]["x"]["scale"] = {{"domain", frame.x}, {"nice", false}};
       layer["encoding"]["y"]["scale"] = {{"domain", frame.y}, {"nice", false}};

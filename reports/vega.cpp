@@ -24,13 +24,14 @@ json quantitative(const std::string& field, const std::string& title) {
 }
 
 json logarithmic(const std::string& field, const std::string& title) {
+  // Of a decade only 1, 2 and 5 are named.
+  constexpr const char* kLabel =
+      "indexof([1, 2, 5], round(datum.value / pow(10, floor(log(datum.value) / LN10 + 1e-9)))) < 0 ? '' : "
+      "datum.value < 0.001 || datum.value >= 100000 ? format(datum.value, '.0e') : format(datum.value, '~g')";
   return titled({{"field", field},
                  {"type", "quantitative"},
                  {"scale", {{"type", "log"}}},
-                 {"axis",
-                  {{"labelExpr",
-                    "datum.value < 0.001 || datum.value >= 100000 ? format(datum.value, '.0e') : "
-                    "format(datum.value, '~g')"}}}},
+                 {"axis", {{"labelExpr", kLabel}}}},
                 title);
 }
 
