@@ -57,11 +57,12 @@ void add_bands(const RunRecord& record, const std::string& prefix, Section& sect
     }
   const std::string id = prefix + "signals";
   document.datasets[id] = csv;
-  const std::string caption = fmt::format(
-      "Every signal over the whole run as a band from its smallest to its largest value in {:.0f} row{}: no "
-      "extreme is "
-      "hidden.",
-      width->front(), width->front() == 1 ? "" : "s");
+  const std::string caption =
+      "Wheels: displacement per row, mean of the four; rotation per row. " +
+      (width->front() == 1
+           ? std::string("Every row is drawn.")
+           : fmt::format("Bands from the smallest to the largest value in {:.0f} rows: no extreme is hidden.",
+                         width->front()));
   const auto panel = [](const NoiseChannel& signal, const std::string& x_title) {
     const json x = vega::quantitative("row", x_title);
     json y = vega::quantitative("min", panel_title(signal));
@@ -91,7 +92,8 @@ void add_detail(const RunRecord& record, const std::string& prefix, Section& sec
         for (std::size_t k = 0; k < values->size(); ++k)
           fmt::format_to(std::back_inserter(csv), "{},{},{},{:.6g}\n", c, stage, k, (*values)[k]);
       }
-  if (rows == 0) return;
+  const std::vector<double>* width = series_of(record, "signal.width");
+  if (rows == 0 || (width != nullptr && width->front() == 1)) return;  // the whole run shows them already
   const std::string id = prefix + "detail";
   document.datasets[id] = csv;
   const std::string caption = fmt::format("The first {} rows as they are.", rows);

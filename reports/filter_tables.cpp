@@ -143,7 +143,8 @@ std::size_t gap_bin(double gap, double hamiltonian_exact) {
 std::string gap_bin_name(std::size_t bin) {
   if (bin == 0) return "0";
   const auto edge = [](std::size_t k) { return kGapLowest * std::pow(10, static_cast<double>(k) / 2); };
-  return fmt::format("{:.2g} .. {:.2g}", edge(bin - 1), edge(bin));
+  const auto text = [&](double v) { return v < 10 ? fmt::format("{:.2g}", v) : fmt::format("{:.0f}", v); };
+  return text(edge(bin - 1)) + " .. " + text(edge(bin));
 }
 
 std::vector<Table> filter_tables(const std::vector<RunRecord>& records) {

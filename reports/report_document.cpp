@@ -153,6 +153,8 @@ class Builder {
       append(totals_table(c), section);
     }
     if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables(sorted_.filters).front());
+    for (Table& table : window_tables(sorted_.windows, false))
+      if (table.id == "methods") section.blocks.emplace_back(std::move(table));
     for (const Comparison& c : compare(sorted_.fusions)) append(totals_table(c), section);
     if (!sorted_.fusions.empty() && !sorted_.fusions.front().notes.empty())
       section.blocks.emplace_back(Paragraph{sorted_.fusions.front().notes.front() + "."});
