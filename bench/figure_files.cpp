@@ -9,11 +9,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "datasets/file_io.hpp"
 #include "reports/web_assets.hpp"
 
 extern char** environ;  // NOLINT: POSIX has no header for it
@@ -50,13 +50,6 @@ class PrivateFolder {
  private:
   fs::path path_;
 };
-
-std::string content(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // Runs words[0], found in PATH, without a shell and with nothing to read; what it writes goes to `log`. Its exit code, 127
 // when there is no such program, 128 + signal when one ended it.
@@ -96,23 +89,27 @@ void write_figures(const Document& document, const fs::path& folder) {
     throw std::runtime_error(
         "figures need the chart library, which this program was built without: install npm, configure and "
         "build again");
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw std::runtime_error(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
-
   const PrivateFolder work;
   for (int k = 0; k < kChartLibraryFiles; ++k) work.write(chart_library(k).name, chart_library(k).text);
   work.write("theme.js", web_file("theme.js"));
   const std::string script = work.write("render_svg.js", web_file("render_svg.js"));
   const std::string list = work.write("figures.json", specifications(document));
   const std::string log = work / "log";
-  const int code = run({"node", script, fs::absolute(folder).string(), list}, log);
+  const fs::path drawn = work / "drawn";
+  fs::create_directory(drawn);
+  const int code = run({"node", script, drawn.string(), list}, log);
   if (code == 127) throw std::runtime_error("figures as SVG files need node: install nodejs (18 or newer)");
-  if (code == 0) return;
-  const std::string said = content(log);
-  throw std::runtime_error(said.empty() ? fmt::format("node ended with exit code {}", code)
-                                        : said.substr(0, said.find('\n')));
+  if (code != 0) {
+    const std::string said = read_file(log);
+    throw std::runtime_error(said.empty() ? fmt::format("node ended with exit code {}", code)
+                                          : said.substr(0, said.find('\n')));
+  }
+  FileTransaction transaction;
+  for (const Figure* figure : figures(document)) {
+    const std::string name = figure->id + ".svg";
+    transaction.add(folder / name, read_file(drawn / name));
+  }
+  transaction.commit();
 }
 
 }  // namespace odobench

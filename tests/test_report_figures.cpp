@@ -203,12 +203,6 @@ TEST(StoredTracksOf, DifferentLengthsAreRefused) {
   EXPECT_THROW(track_files(set), std::invalid_argument);
 }
 
-const Figure* find_figure(const Document& document, const std::string& id) {
-  for (const Figure* figure : figures(document))
-    if (figure->id == id) return figure;
-  return nullptr;
-}
-
 std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(csv);
