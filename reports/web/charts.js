@@ -174,6 +174,7 @@
       this.place.setAttribute('aria-label', this.title);
       this.values = {};  // of the parameters that the controls set
       this.near = false;
+      this.known = {};   // what the last drawing told
       this.drawn = '';   // theme and width of the drawing
       this.busy = Promise.resolve();
     }
@@ -210,10 +211,9 @@
       }
     }
 
-    // Drawn anew where only a drawing tells how much room axes and names take.
+    // Drawn anew where only a drawing tells how much room axes and names take; remembered for the next drawing of this width.
     async fit(themeName, room) {
-      let excess = 0;
-      let layout = theme.firstLayout;
+      let {excess, layout} = this.known.room === room ? this.known : {excess: 0, layout: theme.firstLayout};
       for (let attempt = 1;; ++attempt) {
         const spec = fitted(standalone(this.spec), room - 2, excess);
         this.place.replaceChildren();
@@ -225,6 +225,7 @@
         const natural = Number(this.place.querySelector('svg').getAttribute('width'));
         const better = theme.betterLayout(view, room, layout);
         const fits = natural <= room && (spec.autosize || natural > room - 24);
+        this.known = {room, excess, layout};
         if ((fits && !better) || attempt === 3) return view;
         if (!fits && !better) excess += natural - (room - 4);
         layout = better ?? layout;

@@ -36,7 +36,7 @@ test('opens fast', async () => {
 
 test('every section has a heading, and the navigation leads there', async () => {
   for (const viewport of [laptop, phone])
-    await withPage(browser, {viewport, reducedMotion: 'reduce'}, async (page) => {
+    await withPage(browser, {viewport}, async (page) => {
       const links = page.locator('nav.sections a');
       const sections = page.locator('main > section');
       assert.equal(await links.count(), await sections.count());
@@ -131,7 +131,7 @@ test('every choice of a chart changes it', async () => {
   await withPage(browser, {}, async (page) => {
     for (const id of await figureIds(page)) {
       const place = figure(page, id);
-      for (const kind of ['select', 'fieldset']) {
+      for (const kind of ['select', 'segments']) {
         const controls = kind === 'select' ? place.locator('.controls select') : place.locator('.controls [role=radiogroup]');
         for (let k = 0; k < (await controls.count()); ++k) {
           await drawn(page, id);

@@ -8,7 +8,8 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-work=$1/browser
+build=$(realpath "$1")
+work=$build/browser
 skip() { echo "browser tests skipped: $*"; exit 77; }
 
 for tool in node npm chromium; do
@@ -26,7 +27,7 @@ if [[ -z ${REPORT:-} ]]; then
   export FIGURES TABLES
 fi
 REPORT=$(realpath "$REPORT")
-export REPORT OUTPUT=$work/output CHARTS=$1/charts WEB=$here/../../reports/web
+export REPORT OUTPUT=$work/output CHARTS=$build/charts WEB=$here/../../reports/web
 
 if [[ ! -f $work/.installed ]] || ! cmp --silent "$here/package-lock.json" "$work/.installed"; then
   rm -rf "$work/node_modules"

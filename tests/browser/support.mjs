@@ -13,7 +13,7 @@ export const address = pathToFileURL(process.env.REPORT).href;
 
 // Opens the report, gives the page to `use`, then fails on anything the page complained about or asked for.
 export async function withPage(browser, options, use) {
-  const context = await browser.newContext({viewport: laptop, acceptDownloads: true, ...options});
+  const context = await browser.newContext({viewport: laptop, acceptDownloads: true, reducedMotion: 'reduce', ...options});
   const page = await context.newPage();
   const problems = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && problems.push(`console: ${message.text()}`));
