@@ -358,7 +358,7 @@
       ['Show the specification', () => showSpecification(chart)],
     ];
     const list = element('div');
-    const menu = element('details', {class: 'menu'}, element('summary', {'aria-label': `Save or inspect: ${chart.title}`}, 'Save ▾'), list);
+    const menu = element('details', {class: 'menu'}, element('summary', {'aria-label': `Export: ${chart.title}`}, 'Export ▾'), list);
     for (const [name, action] of actions) {
       const button = element('button', {type: 'button'}, name);
       button.addEventListener('click', () => {

@@ -41,13 +41,17 @@ test('every section has a heading, and the navigation leads there', async () => 
       const sections = page.locator('main > section');
       assert.equal(await links.count(), await sections.count());
       for (let k = 0; k < (await links.count()); ++k) {
-        await links.nth(k).click();
         const heading = sections.nth(k).locator('h2');
         assert.ok((await heading.innerText()).trim().length > 0);
-        await page.waitForFunction(([at]) => {
+        const arrived = () => page.waitForFunction(([at]) => {
           const box = document.querySelectorAll('main > section h2')[at].getBoundingClientRect();
           return box.top >= -1 && box.bottom <= innerHeight;
-        }, [k]);
+        }, [k], {timeout: 3000});
+        await links.nth(k).click();
+        await arrived().catch(async () => {  // the row of links may have moved under the pointer
+          await links.nth(k).click();
+          await arrived();
+        });
         await page.waitForFunction(([at]) => document.querySelectorAll('nav.sections a')[at].hasAttribute('aria-current') ||
           innerHeight + scrollY >= document.documentElement.scrollHeight - 2, [k]);
       }
