@@ -108,7 +108,8 @@
     });
   }
 
-  // `spec` for `room` px; `excess` is what a first drawing was wider than the room.
+  // `spec` for `room` px; `excess` is what a first drawing was wider than the room. "aspect": "equal" in usermeta.odobench keeps
+  // the ratio of width and height, for maps.
   function fitted(spec, room, excess = 0) {
     const meta = spec.usermeta?.odobench ?? {};
     if (isUnit(spec) && !isFaceted(spec)) {
@@ -224,7 +225,8 @@
         await view.runAsync();
         const natural = Number(this.place.querySelector('svg').getAttribute('width'));
         const better = theme.betterLayout(view, room, layout);
-        const fits = natural <= room && (spec.autosize || natural > room - 24);
+        const full = spec.autosize || spec.usermeta?.odobench?.aspect === 'equal' || natural > room - 24;
+        const fits = natural <= room && full;
         this.known = {room, excess, layout};
         if ((fits && !better) || attempt === 3) return view;
         if (!fits && !better) excess += natural - (room - 4);
