@@ -63,7 +63,7 @@ install_missing_packages() {
 
 # What the configuration depends on beyond the files that CMake itself watches.
 configuration_key() {
-  printf '%s\n' "$root" "$(cksum <"$root/CMakePresets.json")" "$(command -v ccache || true)" "${CXX:-}"
+  printf '%s\n' "$root" "$(cksum <"$root/CMakePresets.json")" "$(command -v ccache || true)" "$(command -v npm || true)" "${CXX:-}"
 }
 
 configure() {

@@ -108,7 +108,8 @@
     });
   }
 
-  // `spec` for `room` px; `excess` is what a first drawing was wider than the room.
+  // `spec` for `room` px; `excess` is what a first drawing was wider than the room. "aspect": "equal" in usermeta.odobench keeps
+  // the ratio of width and height, for maps.
   function fitted(spec, room, excess = 0) {
     const meta = spec.usermeta?.odobench ?? {};
     if (isUnit(spec) && !isFaceted(spec)) {
@@ -174,6 +175,7 @@
       this.place.setAttribute('aria-label', this.title);
       this.values = {};  // of the parameters that the controls set
       this.near = false;
+      this.known = {};   // what the last drawing told
       this.drawn = '';   // theme and width of the drawing
       this.busy = Promise.resolve();
     }
@@ -210,10 +212,9 @@
       }
     }
 
-    // Drawn anew where only a drawing tells how much room axes and names take.
+    // Drawn anew where only a drawing tells how much room axes and names take; remembered for the next drawing of this width.
     async fit(themeName, room) {
-      let excess = 0;
-      let layout = theme.firstLayout;
+      let {excess, layout} = this.known.room === room ? this.known : {excess: 0, layout: theme.firstLayout};
       for (let attempt = 1;; ++attempt) {
         const spec = fitted(standalone(this.spec), room - 2, excess);
         this.place.replaceChildren();
@@ -224,7 +225,9 @@
         await view.runAsync();
         const natural = Number(this.place.querySelector('svg').getAttribute('width'));
         const better = theme.betterLayout(view, room, layout);
-        const fits = natural <= room && (spec.autosize || natural > room - 24);
+        const full = spec.autosize || spec.usermeta?.odobench?.aspect === 'equal' || natural > room - 24;
+        const fits = natural <= room && full;
+        this.known = {room, excess, layout};
         if ((fits && !better) || attempt === 3) return view;
         if (!fits && !better) excess += natural - (room - 4);
         layout = better ?? layout;
@@ -357,7 +360,7 @@
       ['Show the specification', () => showSpecification(chart)],
     ];
     const list = element('div');
-    const menu = element('details', {class: 'menu'}, element('summary', {'aria-label': `Save or inspect: ${chart.title}`}, 'Save ▾'), list);
+    const menu = element('details', {class: 'menu'}, element('summary', {'aria-label': `Export: ${chart.title}`}, 'Export ▾'), list);
     for (const [name, action] of actions) {
       const button = element('button', {type: 'button'}, name);
       button.addEventListener('click', () => {

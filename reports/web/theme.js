@@ -62,7 +62,7 @@
       legend: {
         ...text, orient: 'top', titleOrient: 'left', direction: 'horizontal', columnPadding: 18,
         ...(layout.columns > 0 ? {columns: layout.columns} : {}),
-        labelLimit: Math.min(260, width) * loose, symbolStrokeWidth: 2.5, symbolSize: 130, offset: 10, titlePadding: 8,
+        labelLimit: Math.min(260, width) * loose, symbolStrokeWidth: 2.5, symbolSize: 130, symbolOpacity: 1, offset: 10, titlePadding: 8,
         gradientLength: Math.min(240, Math.max(120, width / 3)), gradientThickness: 10,
       },
       header: {...text, titleFontSize: 12, labelFontSize: 13, labelFontWeight: 500, labelColor: c.text, labelLimit: width * loose},
