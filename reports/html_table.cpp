@@ -13,6 +13,9 @@
 namespace odobench {
 namespace {
 
+// Rows; a table with more scrolls inside the page.
+constexpr std::size_t kLongTable = 40;
+
 struct ColumnLayout {
   int tail = 0;  // characters after the number that every row keeps free, so that numbers stand under numbers
   bool number = false;
@@ -116,9 +119,9 @@ std::string render_html_table(const Table& table, const std::string& anchor, int
   const std::string id = html_escape(anchor);
   std::string out = fmt::format("<div class=\"table\" id=\"{}\">\n", id);
   out += fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{}-title\"><table "
+      "<div class=\"scroll{}\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{}-title\"><table "
       "data-table=\"{}\">\n",
-      id, html_escape(table.id));
+      table.rows.size() > kLongTable ? " long" : "", id, html_escape(table.id));
   out += fmt::format(
       "<caption><span id=\"{}-title\"><span class=\"number\">Table {}.</span> {}</span></caption>\n", id,
       number, html_escape(table.title));

@@ -73,7 +73,8 @@
       concat: {spacing: 24},
       facet: {spacing: 24},
       style: {
-        reference: {stroke: c.text, fill: null, strokeWidth: 1.25, strokeDash: [5, 3]},
+        reference: {color: c.text, strokeWidth: 1.25, strokeDash: [5, 3]},
+        reference_band: {color: c.muted, fillOpacity: 0.2},
         muted: {stroke: c.line, strokeWidth: 1, opacity: 0.8},
       },
     };
