@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/check_command.hpp"
+#include "bench/compare_command.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/filter_arguments.hpp"
@@ -40,6 +41,7 @@ constexpr const char* kExamples = R"(Examples:
   bench list solvers
   bench import vitko2024 --from=DIR --out=set.json
   bench check --baseline=golden.json results
+  bench compare results/old results/new --fail-on="J:+0.1%,evaluations:+50%"
 
 Without a verb bench runs solvers: 'bench run --help' lists those options.
 Exit codes: 0 done, 1 a check failed or no solver gave a result, 2 wrong usage, 3 wrong data, 130 interrupted.)";
@@ -67,6 +69,7 @@ struct Arguments {
   VerifyOptions verify;
   CheckOptions check;
   ReportOptions report;
+  CompareArguments compare;
   FusionArguments fusion;
 };
 
@@ -110,10 +113,14 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
                   "write these runs to the baseline instead, keeping its tolerances");
   add_format(*check, a.check.format);
 
+  CLI::App* compare = add_compare_verb(app, a.compare);
+  add_format(*compare, a.compare.format);
+
   return {{evaluate, [&a] { return evaluate_command(a.evaluate); }},
           {list, [&a] { return list_command(a.list); }},
           {report, [&a] { return report_command(a.report); }},
-          {check, [&a] { return check_command(a.check); }}};
+          {check, [&a] { return check_command(a.check); }},
+          {compare, [&a] { return compare_command(a.compare); }}};
 }
 
 std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {

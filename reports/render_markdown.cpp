@@ -34,6 +34,10 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
+std::string markdown_note(const std::string& note) {
+  return fmt::format("- {}\n", escaped(note));
+}
+
 std::string render_markdown(const std::vector<Table>& tables) {
   std::string out;
   for (const Table& table : tables) {
@@ -49,7 +53,7 @@ std::string render_markdown(const std::vector<Table>& tables) {
       out += "\n";
     }
     if (!table.notes.empty()) out += "\n";
-    for (const std::string& note : table.notes) out += fmt::format("- {}\n", escaped(note));
+    for (const std::string& note : table.notes) out += markdown_note(note);
   }
   return out;
 }

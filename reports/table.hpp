@@ -9,6 +9,9 @@ namespace odobench {
 
 enum class Align { Left, Right };
 
+// Which of two numbers of a column is the better one, if that can be said.
+enum class Better { None, Lower, Higher };
+
 // How a number is written for people; the machine formats (csv, json) always carry the full double.
 enum class Notation {
   Fixed,        // precision = digits after the decimal point
@@ -84,5 +87,8 @@ std::string render_latex(const std::vector<Table>& tables);
 
 // RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside doubled.
 std::string csv_field(const std::string& text);
+
+// A line of a list, "- text", with what Markdown would interpret escaped.
+std::string markdown_note(const std::string& note);
 
 }  // namespace odobench
