@@ -116,11 +116,24 @@ Column column(const std::string& id, Align align = Align::Left) {
   return c;
 }
 
+// Text columns have no unit of their own.
+Column named(const std::string& id, const std::string& name) {
+  Column c = column(id);
+  c.name = name;
+  return c;
+}
+
+Column duration_column() {
+  Column c = column("duration_s", Align::Right);
+  c.name = "duration";
+  c.unit = "s";
+  return c;
+}
+
 std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
   Table drives{"drives",
                fmt::format("Drives of {}", s.name),
-               {column("drive"), column("description"), column("phases", Align::Right),
-                column("duration_s", Align::Right)},
+               {column("drive"), column("description"), column("phases", Align::Right), duration_column()},
                {},
                {s.description}};
   for (const simulate::Drive& d : s.drives)
@@ -142,7 +155,8 @@ std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
 std::vector<Table> detail_tables(const DynamicsScenario& s) {
   Table segments{"segments",
                  fmt::format("Segments of {}", s.name),
-                 {column("until_s"), column("voltages_V"), column("steering_deg")},
+                 {named("until_s", "until [s]"), named("voltages_V", "voltages [V]"),
+                  named("steering_deg", "steering [deg]")},
                  {},
                  {s.description}};
   for (const dynamics::Segment& g : s.setup.segments) {

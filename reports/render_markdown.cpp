@@ -32,6 +32,12 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+std::string cell_markdown(const Cell& cell) {
+  const CellText text = cell_text(cell);
+  if (!cell.best) return escaped(whole_text(text));
+  return fmt::format("**{}**{}{}", escaped(text.head), text.tail.empty() ? "" : " ", escaped(text.tail));
+}
+
 }  // namespace
 
 std::string markdown_note(const std::string& note) {
@@ -49,7 +55,7 @@ std::string render_markdown(const std::vector<Table>& tables) {
     out += "\n";
     for (const auto& row : table.rows) {
       out += "|";
-      for (const Cell& cell : row) out += fmt::format(" {} |", escaped(whole_text(cell_text(cell))));
+      for (const Cell& cell : row) out += fmt::format(" {} |", cell_markdown(cell));
       out += "\n";
     }
     if (!table.notes.empty()) out += "\n";

@@ -308,5 +308,58 @@ TEST(Console, WrapsTextFirstThenSplitsBetweenGroups) {
   EXPECT_THAT(render({wide_table()}, Format::Console, {30}), HasSubstr("key          x1          x2\n"));
 }
 
+// Rows a, b, c, d; the first is a reference.
+Table ranking(Better better, const std::vector<double>& values) {
+  Table table{"r", "r", {{"key", "key", "", "", "", Align::Left}, best_if(better, {"v", "v", "", "", ""})},
+              {},  {},  {0}};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    table.rows.push_back({text_cell(std::string(1, static_cast<char>('a' + i))), fixed_cell(values[i], 2)});
+  return table;
+}
+
+std::string best_rows(Table table) {
+  mark_best(table);
+  std::string out;
+  for (const auto& row : table.rows)
+    if (row[1].best) out += row[0].text;
+  return out;
+}
+
+TEST(Best, LowestOrHighestOfTheRowsThatCompete) {
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 3, 1, 2})), "c");
+  EXPECT_EQ(best_rows(ranking(Better::Higher, {9, 3, 1, 2})), "b");
+  EXPECT_EQ(best_rows(ranking(Better::None, {0, 3, 1, 2})), "");
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 1.001, 1.004, 2})), "bc") << "they read the same";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2, 2, 2})), "") << "no best among equals";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2})), "") << "only one competes";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, std::nan(""), 2, -kInf, 3})), "c") << "finite ones only";
+}
+
+TEST(Best, EveryFormatForPeopleShowsIt) {
+  Table table = ranking(Better::Lower, {0, 3, 1, 2});
+  table.rows[1][1].difference = 2;
+  EXPECT_EQ(render({table}, Format::Console), R"(r
+─────────────────
+key             v
+─────────────────
+a    0.00
+b    3.00 (+2.00)
+c    1.00 *
+d    2.00
+─────────────────
+*: best of its column.
+)");
+  EXPECT_THAT(render({table}, Format::Console, {80, true}),
+              HasSubstr("c    \x1b[1m1.00\x1b[0m\nd    2.00\n─────────────────\n"));
+  EXPECT_THAT(render({table, table}, Format::Console, {80, true}), Not(HasSubstr("best of")));
+  const std::string twice = render({table, table}, Format::Console);
+  EXPECT_EQ(twice.find("best of"), twice.rfind("best of")) << "explained once";
+  EXPECT_THAT(render({table}, Format::Markdown), HasSubstr("| b | 3.00 (+2.00) |\n| c | **1.00** |\n"));
+  const Table plain = ranking(Better::None, {0, 3, 1, 2});
+  table.rows[1][1].difference.reset();
+  EXPECT_EQ(render({table}, Format::Csv), render({plain}, Format::Csv));
+  EXPECT_EQ(render({table}, Format::Json), render({plain}, Format::Json));
+}
+
 }  // namespace
 }  // namespace odobench
