@@ -91,7 +91,9 @@ std::string render(const std::vector<Table>& tables, Format format, const Render
 //            note; an empty line between tables. A column with differences (marks) is followed by a column for them.
 //   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id: cell},..],"notes":[..]}]};
 //            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than a value
-//   latex    booktabs; a comment names the packages
+//   latex    booktabs and siunitx 3 (S columns, \unit), groups of columns under a common heading, differences in brackets in a
+//            column of their own; cut into blocks that fit a line of 345 pt and into continued tables that fit a page; the best
+//            values are bold; a comment names the packages
 std::string render_console(const std::vector<Table>& tables, const RenderOptions& options);
 std::string render_markdown(const std::vector<Table>& tables);
 std::string render_csv(const std::vector<Table>& tables);
