@@ -77,6 +77,11 @@ void add_format(CLI::App& app, std::string& format) {
   app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
 }
 
+// Of verbs that write files instead of printing tables.
+void add_json(CLI::App& app, bool& json) {
+  app.add_flag("--json", json, "say on standard output, as JSON, what was written");
+}
+
 std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
   CLI::App* evaluate = app.add_subcommand("evaluate", "cost and error tables of given parameters");
   evaluate->add_option("--data", a.evaluate.data, "data set [the demo set]")->type_name("SET.JSON");
@@ -140,6 +145,7 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
   import->add_option("--out", a.import.out, "data set to write")->required()->type_name("SET.JSON");
   import->add_flag("--overwrite", a.import.overwrite, "replace a data set that is there");
   import->add_flag("--quiet", a.import.quiet, "no progress");
+  add_json(*import, a.import.json);
 
   CLI::App* demo = app.add_subcommand("demo", "make the demo data set");
   demo->add_option("--out", a.demo.out, "folder for set.json")->required()->type_name("DIR");
@@ -148,6 +154,7 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
           "of its noise [that of the set in the repository]")
       ->type_name("N");
   demo->add_flag("--overwrite", a.demo.overwrite, "replace a data set that is there");
+  add_json(*demo, a.demo.json);
 
   return {{run,
            [run, &a] {
@@ -158,6 +165,24 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
           {windows, [&a] { return windows_command(a.windows); }},
           {import, [&a] { return import_command(a.import); }},
           {demo, [&a] { return demo_command(a.demo); }}};
+}
+
+// Every verb has --json. Those with tables take it for --format=json, so that a configuration file does not overrule it; the others
+// have a flag of their own (add_json).
+void offer_json(CLI::App& verb) {
+  if (verb.get_option_no_throw("--json") == nullptr)
+    verb.add_flag("--json")->description("the same as --format=json");
+}
+
+void apply_json(CLI::App& verb) {
+  CLI::Option* format = verb.get_option_no_throw("--format");
+  if (format == nullptr || verb.get_option("--json")->count() == 0) return;
+  if (format->count() > 0 && format->as<std::string>() != "json")
+    throw std::invalid_argument(
+        fmt::format("--json: it contradicts --format={}, expected one of them", format->as<std::string>()));
+  format->clear();
+  format->add_result("json");
+  format->run_callback();
 }
 
 // CLI11 would report leftovers as a list; one line with the nearest name is clearer.
@@ -223,6 +248,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
                      "the motor robot with the errors of its thesis (kind dynamics)");
   simulate->add_flag("--overwrite", a.simulate.overwrite, "replace files that are there");
   simulate->add_flag("--quiet", a.simulate.quiet, "no remarks");
+  add_json(*simulate, a.simulate.json);
 
   CLI::App* plan =
       app.add_subcommand("plan", "which parameters drives can determine, and which drives to add");
@@ -275,6 +301,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   app.set_version_flag("--version", version_line);
   for (const Verb& verb : verbs) {
     verb.app->allow_extras();
+    offer_json(*verb.app);
     verb.app->set_version_flag("--version", version_line);
   }
   complete_verb(words, verbs);
@@ -298,6 +325,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   for (const Verb& verb : verbs) {
     if (!verb.app->parsed()) continue;
     refuse_leftovers(*verb.app);
+    apply_json(*verb.app);
     return verb.execute();
   }
   throw std::logic_error("no verb was parsed");

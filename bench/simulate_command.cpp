@@ -8,6 +8,7 @@
 
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
+#include "bench/written.hpp"
 #include "datasets/file_io.hpp"
 #include "datasets/sha256.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -76,13 +77,16 @@ void write_recordings(const simulate::RecordingScenario& s, const SimulateOption
   files.add(out / "truth.json", simulate::truth_json(s, o.seed, set));
   files.add(out / "truth.csv", simulate::truth_csv(s, set));
   if (o.raw) add_raw_files(set, o.threads, out, files);
+  std::vector<fs::path> written = files.targets();
   files.commit();
-  if (!o.raw) save_dataset(set.dataset, set_json);
+  if (!o.raw)
+    for (fs::path& file : save_dataset(set.dataset, set_json)) written.push_back(std::move(file));
   std::size_t samples = 0;
   for (const Recording& r : set.dataset.recordings) samples += r.size();
   if (!o.quiet)
     note(fmt::format("{}: {} recordings, {} samples, truth.json and truth.csv beside them",
                      (o.raw ? out : set_json).string(), set.dataset.recordings.size(), samples));
+  if (o.json) print_tables({dataset_table(set.dataset), written_table(written)}, Format::Json);
 }
 
 void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
@@ -103,10 +107,12 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   files.add(out / "truth.csv", dynamics::truth_csv(run.truth));
   files.add(out / "state.csv", dynamics::state_csv(s.setup.robot, samples));
   files.add(out / "robot.json", robot_json(s.setup.robot));
+  const std::vector<fs::path> written = files.targets();
   files.commit();
   if (!o.quiet)
     note(fmt::format("{}: sensors.csv, truth.csv and state.csv of {} samples, robot.json", out.string(),
                      samples.size()));
+  if (o.json) print_tables({written_table(written)}, Format::Json);
 }
 
 Column column(const std::string& id, Align align = Align::Left) {
