@@ -7,6 +7,7 @@
 
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
+#include "bench/written.hpp"
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
 #include "reports/baseline.hpp"
@@ -34,6 +35,7 @@ ExitCode check_command(const CheckOptions& options) {
     const Baseline baseline = make_baseline(records, tolerances);
     write_file(options.baseline, to_json_text(baseline));
     note(fmt::format("{}: {} entries written", options.baseline, baseline.entries.size()));
+    if (format == Format::Json) print_tables({written_table({options.baseline})}, format);
     return ExitCode::Success;
   }
   const BaselineReport report = check_baseline(read_baseline(options.baseline), records);

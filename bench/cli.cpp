@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/check_command.hpp"
+#include "bench/compare_command.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/filter_arguments.hpp"
@@ -41,6 +42,7 @@ constexpr const char* kExamples = R"(Examples:
   bench list solvers
   bench import vitko2024 --from=DIR --out=set.json
   bench check --baseline=golden.json results
+  bench compare results/old results/new --fail-on="J:+0.1%,evaluations:+50%"
 
 Without a verb bench runs solvers: 'bench run --help' lists those options.
 Exit codes: 0 done, 1 a check failed or no solver gave a result, 2 wrong usage, 3 wrong data, 130 interrupted.)";
@@ -69,11 +71,17 @@ struct Arguments {
   CheckOptions check;
   ReportOptions report;
   ExportOptions exporting;
+  CompareArguments compare;
   FusionArguments fusion;
 };
 
 void add_format(CLI::App& app, std::string& format) {
   app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
+}
+
+// Of verbs that write files instead of printing tables.
+void add_json(CLI::App& app, bool& json) {
+  app.add_flag("--json", json, "say on standard output, as JSON, what was written");
 }
 
 std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
@@ -119,6 +127,7 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
       ->required()
       ->type_name("DIR");
   exporting->add_flag("--overwrite", a.exporting.overwrite, "replace files that are there");
+  add_json(*exporting, a.exporting.json);
 
   CLI::App* check =
       app.add_subcommand("check", "compare stored runs with a baseline; exit code 1 when something moved");
@@ -130,11 +139,15 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
                   "write these runs to the baseline instead, keeping its tolerances");
   add_format(*check, a.check.format);
 
+  CLI::App* compare = add_compare_verb(app, a.compare);
+  add_format(*compare, a.compare.format);
+
   return {{evaluate, [&a] { return evaluate_command(a.evaluate); }},
           {list, [&a] { return list_command(a.list); }},
           {report, [&a] { return report_command(a.report); }},
           {exporting, [&a] { return export_command(a.exporting); }},
-          {check, [&a] { return check_command(a.check); }}};
+          {check, [&a] { return check_command(a.check); }},
+          {compare, [&a] { return compare_command(a.compare); }}};
 }
 
 std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
@@ -154,6 +167,7 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
   import->add_option("--out", a.import.out, "data set to write")->required()->type_name("SET.JSON");
   import->add_flag("--overwrite", a.import.overwrite, "replace a data set that is there");
   import->add_flag("--quiet", a.import.quiet, "no progress");
+  add_json(*import, a.import.json);
 
   CLI::App* demo = app.add_subcommand("demo", "make the demo data set");
   demo->add_option("--out", a.demo.out, "folder for set.json")->required()->type_name("DIR");
@@ -162,6 +176,7 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
           "of its noise [that of the set in the repository]")
       ->type_name("N");
   demo->add_flag("--overwrite", a.demo.overwrite, "replace a data set that is there");
+  add_json(*demo, a.demo.json);
 
   return {{run,
            [run, &a] {
@@ -172,6 +187,24 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
           {windows, [&a] { return windows_command(a.windows); }},
           {import, [&a] { return import_command(a.import); }},
           {demo, [&a] { return demo_command(a.demo); }}};
+}
+
+// Every verb has --json. Those with tables take it for --format=json, so that a configuration file does not overrule it; the others
+// have a flag of their own (add_json).
+void offer_json(CLI::App& verb) {
+  if (verb.get_option_no_throw("--json") == nullptr)
+    verb.add_flag("--json")->description("the same as --format=json");
+}
+
+void apply_json(CLI::App& verb) {
+  CLI::Option* format = verb.get_option_no_throw("--format");
+  if (format == nullptr || verb.get_option("--json")->count() == 0) return;
+  if (format->count() > 0 && format->as<std::string>() != "json")
+    throw std::invalid_argument(
+        fmt::format("--json: it contradicts --format={}, expected one of them", format->as<std::string>()));
+  format->clear();
+  format->add_result("json");
+  format->run_callback();
 }
 
 // CLI11 would report leftovers as a list; one line with the nearest name is clearer.
@@ -237,6 +270,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
                      "the motor robot with the errors of its thesis (kind dynamics)");
   simulate->add_flag("--overwrite", a.simulate.overwrite, "replace files that are there");
   simulate->add_flag("--quiet", a.simulate.quiet, "no remarks");
+  add_json(*simulate, a.simulate.json);
 
   CLI::App* plan =
       app.add_subcommand("plan", "which parameters drives can determine, and which drives to add");
@@ -289,6 +323,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   app.set_version_flag("--version", version_line);
   for (const Verb& verb : verbs) {
     verb.app->allow_extras();
+    offer_json(*verb.app);
     verb.app->set_version_flag("--version", version_line);
   }
   complete_verb(words, verbs);
@@ -312,6 +347,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   for (const Verb& verb : verbs) {
     if (!verb.app->parsed()) continue;
     refuse_leftovers(*verb.app);
+    apply_json(*verb.app);
     return verb.execute();
   }
   throw std::logic_error("no verb was parsed");

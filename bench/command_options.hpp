@@ -91,12 +91,14 @@ struct ImportOptions {
   std::string out;
   bool overwrite = false;
   bool quiet = false;
+  bool json = false;  // say on standard output what was written
 };
 
 struct DemoOptions {
   std::string out;
   std::optional<std::uint64_t> seed;  // of the noise; none: that of the demo set in the repository
   bool overwrite = false;
+  bool json = false;  // say on standard output what was written
 };
 
 struct SimulateOptions {
@@ -108,6 +110,7 @@ struct SimulateOptions {
   int threads = 0;            // 0: one per core
   bool overwrite = false;
   bool quiet = false;
+  bool json = false;  // say on standard output what was written
 };
 
 struct PlanOptions {
@@ -150,6 +153,7 @@ struct ExportOptions {
   bool tum = false;
   std::string out;  // folder
   bool overwrite = false;
+  bool json = false;
 };
 
 }  // namespace odobench

@@ -93,7 +93,7 @@ Json rows_of(const Matrix& m) {
 }
 
 std::string json_text(const SystemFile& file, const DiscretiseOptions& options, const Discretisation& d,
-                      const SeriesDiscretisation* series) {
+                      const SeriesDiscretisation* series, const std::vector<Table>& tables) {
   Json names = Json::array();
   for (const SignalInfo& s : file.system.states) names.push_back(s.name);
   Json root{
@@ -104,6 +104,8 @@ std::string json_text(const SystemFile& file, const DiscretiseOptions& options, 
     root["series_error"] = {{"F", series->f_error},         {"Psi", series->psi_error},
                             {"Gamma", series->gamma_error}, {"Q", series->q_error},
                             {"F_bound", series->f_bound},   {"integral_bound", series->integral_bound}};
+  // The same as tables, as every verb has them.
+  root["tables"] = Json::parse(render(tables, Format::Json)).at("tables");
   return root.dump(2) + "\n";
 }
 
@@ -142,10 +144,6 @@ ExitCode discretise_command(const DiscretiseOptions& options) {
   if (options.order) series = discretise_series(file.system, options.period, *options.order);
   const Discretisation d = series ? series->value : discretise(file.system, options.period);
   const SeriesDiscretisation* errors = series ? &*series : nullptr;
-  if (format == Format::Json) {
-    print_text(json_text(file, options, d, errors));
-    return ExitCode::Success;
-  }
   if (format == Format::Latex) {
     print_text(latex_text(file, options, d, errors));
     return ExitCode::Success;
@@ -156,7 +154,10 @@ ExitCode discretise_command(const DiscretiseOptions& options) {
   std::vector<Table> tables;
   for (const Shown& m : shown(file.system, d)) tables.push_back(matrix_table(file.system, m, suffix));
   if (errors != nullptr) tables.push_back(error_table(*errors, *options.order));
-  print_tables(tables, format);
+  if (format == Format::Json)
+    print_text(json_text(file, options, d, errors, tables));
+  else
+    print_tables(tables, format);
   return ExitCode::Success;
 }
 

@@ -83,8 +83,8 @@ std::string specifications(const Document& document) {
 
 }  // namespace
 
-void write_figures(const Document& document, const fs::path& folder) {
-  if (figures(document).empty()) return;
+std::vector<fs::path> write_figures(const Document& document, const fs::path& folder) {
+  if (figures(document).empty()) return {};
   if (!has_chart_library())
     throw std::runtime_error(
         "figures need the chart library, which this program was built without: install npm, configure and "
@@ -105,11 +105,14 @@ void write_figures(const Document& document, const fs::path& folder) {
                                           : said.substr(0, said.find('\n')));
   }
   FileTransaction transaction;
+  std::vector<fs::path> files;
   for (const Figure* figure : figures(document)) {
     const std::string name = figure->id + ".svg";
-    transaction.add(folder / name, read_file(drawn / name));
+    files.push_back(folder / name);
+    transaction.add(files.back(), read_file(drawn / name));
   }
   transaction.commit();
+  return files;
 }
 
 }  // namespace odobench

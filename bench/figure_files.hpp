@@ -2,14 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "reports/document.hpp"
 
 namespace odobench {
 
 // Writes FOLDER/ID.svg for every figure, in the colours of print and with what its parameters are set to; the folder is made if
-// there is none. Each file is complete or not there. All are drawn by one process of node with the chart library of this
+// there is none. Gives the files: all of them are there in the end, or none is new. All are drawn by one process of node with the chart library of this
 // binary. Throws std::runtime_error with one line when there is no node, no chart library, or a figure cannot be drawn.
-void write_figures(const Document& document, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> write_figures(const Document& document,
+                                                 const std::filesystem::path& folder);
 
 }  // namespace odobench

@@ -9,6 +9,7 @@
 
 #include "bench/interrupt.hpp"
 #include "bench/table_output.hpp"
+#include "bench/written.hpp"
 #include "datasets/demo_generator.hpp"
 #include "datasets/vitko2024.hpp"
 #include "solvers/options.hpp"
@@ -22,11 +23,12 @@ void refuse_existing(const std::filesystem::path& set, bool overwrite) {
         fmt::format("{}: it exists; choose another name or give --overwrite", set.string()));
 }
 
-void save(const Dataset& dataset, const std::filesystem::path& set) {
-  save_dataset(dataset, set);
+void save(const Dataset& dataset, const std::filesystem::path& set, bool json) {
+  const std::vector<std::filesystem::path> files = save_dataset(dataset, set);
   std::size_t samples = 0;
   for (const Recording& r : dataset.recordings) samples += r.size();
   note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
+  if (json) print_tables({dataset_table(dataset), written_table(files)}, Format::Json);
 }
 
 }  // namespace
@@ -51,14 +53,14 @@ ExitCode import_command(const ImportOptions& options) {
   if (InterruptGuard::flag().load()) throw Interruption();
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
-  save(dataset, options.out);
+  save(dataset, options.out, options.json);
   return ExitCode::Success;
 }
 
 ExitCode demo_command(const DemoOptions& options) {
   const std::filesystem::path set = std::filesystem::path(options.out) / "set.json";
   refuse_existing(set, options.overwrite);
-  save(make_demo_dataset(options.seed.value_or(kDemoSeed)), set);
+  save(make_demo_dataset(options.seed.value_or(kDemoSeed)), set, options.json);
   return ExitCode::Success;
 }
 

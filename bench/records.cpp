@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <stdexcept>
@@ -35,6 +36,13 @@ void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& rec
     record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
 }
 
+std::map<std::string, double> budget_figures(const Budget& budget) {
+  std::map<std::string, double> figures{{"max_evaluations", static_cast<double>(budget.max_evaluations)},
+                                        {"max_seconds", budget.max_seconds}};
+  if (std::isfinite(budget.target_cost)) figures["target"] = budget.target_cost;
+  return figures;
+}
+
 RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
   RunRecord record;
   record.problem = loaded.problem.name();
@@ -48,7 +56,8 @@ RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, c
 }  // namespace
 
 RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
-                     const Result& result, const RunContext& context, const std::string& time_utc) {
+                     const Budget& budget, const Result& result, const RunContext& context,
+                     const std::string& time_utc) {
   RunRecord record = empty_record(loaded, context, time_utc);
   record.label = cell.label();
   record.kind = result.termination == Termination::NotApplicable ? "skipped" : "run";
@@ -59,6 +68,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.base_seed = base_seed;
   record.repetition = cell.repetition;
   record.start = cell.random_start ? "random" : "nominal";
+  record.budget = budget_figures(budget);
   record.termination = to_string(result.termination);
   record.message = result.message;
   if (result.usable()) {

@@ -14,7 +14,8 @@ namespace odobench {
 // Parameters count as on a bound when they are equal to it: what solvers return lies in the box to the last
 // bit, and the map of the unit box sends -1 and 1 to the bounds exactly.
 RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
-                     const Result& result, const RunContext& context, const std::string& time_utc);
+                     const Budget& budget, const Result& result, const RunContext& context,
+                     const std::string& time_utc);
 
 // The notes of the lowest run of each problem and data set, for the tables.
 std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);

@@ -12,6 +12,7 @@
 #include "bench/figure_files.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
+#include "bench/written.hpp"
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
 #include "reports/report_document.hpp"
@@ -69,15 +70,18 @@ ExitCode report_command(const ReportOptions& options) {
     return ExitCode::Success;
   }
   const Document document = make_report(report_input(options, records));
+  std::vector<fs::path> written;
   if (!options.out.empty()) {
     write_file(options.out, render_html(document));
+    written.emplace_back(options.out);
     note(fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
                      document.sections.size()));
   }
   if (!options.figures.empty()) {
-    write_figures(document, options.figures);
+    for (fs::path& file : write_figures(document, options.figures)) written.push_back(std::move(file));
     note(fmt::format("{}: {} figures", options.figures, figures(document).size()));
   }
+  if (format == Format::Json) print_tables({written_table(written)}, format);
   return ExitCode::Success;
 }
 
@@ -93,17 +97,21 @@ ExitCode export_command(const ExportOptions& options) {
     throw std::invalid_argument(
         fmt::format("--out={}: it exists; choose another name or give --overwrite", options.out));
   FileTransaction transaction;
+  std::vector<fs::path> written;
   std::set<std::string> taken;
   const auto add = [&](const std::string& label, const PoseColumns& pose) {
     const std::string folder = folder_name(label, taken);
-    for (const TrackRecording& r : set->recordings)
-      transaction.add(out / folder / (vega::slug(r.id) + ".tum"), tum_text(*set, r, pose));
+    for (const TrackRecording& r : set->recordings) {
+      written.push_back(out / folder / (vega::slug(r.id) + ".tum"));
+      transaction.add(written.back(), tum_text(*set, r, pose));
+    }
   };
   add("reference", set->reference);
   for (const StoredTrack& track : set->tracks) add(track.label, track.pose);
   transaction.commit();
   note(fmt::format("{}: {} trajectories of {} recordings", options.out, set->tracks.size() + 1,
                    set->recordings.size()));
+  if (options.json) print_tables({written_table(written)}, Format::Json);
   return ExitCode::Success;
 }
 

@@ -77,6 +77,9 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
 
 void apply_config(CLI::App& app, const std::string& config) {
   for (const ConfigEntry& entry : read_config(config)) {
+    if (entry.key == "json")
+      throw std::invalid_argument(
+          fmt::format("{}: unknown key 'json', write format = \"json\"", entry.where));
     const bool no_key = entry.key == "config" || entry.key == "help" || entry.key == "version";
     CLI::Option* option = no_key ? nullptr : app.get_option_no_throw("--" + entry.key);
     if (option == nullptr)

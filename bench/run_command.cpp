@@ -27,10 +27,11 @@ namespace {
 class Recorder final : public CellWatcher {
  public:
   Recorder(const LoadedProblem& loaded, const std::vector<RunCell>& cells, std::uint64_t base_seed,
-           const RunContext& context, RecordFile* file, ProgressLine& progress)
+           const Budget& budget, const RunContext& context, RecordFile* file, ProgressLine& progress)
       : loaded_(loaded),
         cells_(cells),
         base_seed_(base_seed),
+        budget_(budget),
         context_(context),
         file_(file),
         progress_(progress),
@@ -41,7 +42,7 @@ class Recorder final : public CellWatcher {
     progress_.progressed(cell, progress);
   }
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    RunRecord record = run_record(loaded_, cells_[cell], base_seed_, result, context_, time_utc);
+    RunRecord record = run_record(loaded_, cells_[cell], base_seed_, budget_, result, context_, time_utc);
     {
       const std::lock_guard lock(mutex_);
       if (file_ != nullptr) file_->append(record);
@@ -65,6 +66,7 @@ class Recorder final : public CellWatcher {
   const LoadedProblem& loaded_;
   const std::vector<RunCell>& cells_;
   const std::uint64_t base_seed_;
+  const Budget& budget_;
   const RunContext& context_;
   RecordFile* file_;
   ProgressLine& progress_;
@@ -156,7 +158,7 @@ ExitCode run_command(const RunOptions& options) {
 
   const InterruptGuard guard;
   ProgressLine progress(!options.quiet, labels);
-  Recorder recorder(loaded, cells, plan.base_seed, context, file.get(), progress);
+  Recorder recorder(loaded, cells, plan.base_seed, options.budget, context, file.get(), progress);
   run_cells(loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
   progress.clear();
   const bool interrupted = InterruptGuard::flag().load();

@@ -8,6 +8,7 @@
 
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
+#include "bench/written.hpp"
 #include "datasets/file_io.hpp"
 #include "datasets/sha256.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -76,13 +77,16 @@ void write_recordings(const simulate::RecordingScenario& s, const SimulateOption
   files.add(out / "truth.json", simulate::truth_json(s, o.seed, set));
   files.add(out / "truth.csv", simulate::truth_csv(s, set));
   if (o.raw) add_raw_files(set, o.threads, out, files);
+  std::vector<fs::path> written = files.targets();
   files.commit();
-  if (!o.raw) save_dataset(set.dataset, set_json);
+  if (!o.raw)
+    for (fs::path& file : save_dataset(set.dataset, set_json)) written.push_back(std::move(file));
   std::size_t samples = 0;
   for (const Recording& r : set.dataset.recordings) samples += r.size();
   if (!o.quiet)
     note(fmt::format("{}: {} recordings, {} samples, truth.json and truth.csv beside them",
                      (o.raw ? out : set_json).string(), set.dataset.recordings.size(), samples));
+  if (o.json) print_tables({dataset_table(set.dataset), written_table(written)}, Format::Json);
 }
 
 void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
@@ -103,10 +107,12 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   files.add(out / "truth.csv", dynamics::truth_csv(run.truth));
   files.add(out / "state.csv", dynamics::state_csv(s.setup.robot, samples));
   files.add(out / "robot.json", robot_json(s.setup.robot));
+  const std::vector<fs::path> written = files.targets();
   files.commit();
   if (!o.quiet)
     note(fmt::format("{}: sensors.csv, truth.csv and state.csv of {} samples, robot.json", out.string(),
                      samples.size()));
+  if (o.json) print_tables({written_table(written)}, Format::Json);
 }
 
 Column column(const std::string& id, Align align = Align::Left) {
@@ -116,11 +122,24 @@ Column column(const std::string& id, Align align = Align::Left) {
   return c;
 }
 
+// Text columns have no unit of their own.
+Column named(const std::string& id, const std::string& name) {
+  Column c = column(id);
+  c.name = name;
+  return c;
+}
+
+Column duration_column() {
+  Column c = column("duration_s", Align::Right);
+  c.name = "duration";
+  c.unit = "s";
+  return c;
+}
+
 std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
   Table drives{"drives",
                fmt::format("Drives of {}", s.name),
-               {column("drive"), column("description"), column("phases", Align::Right),
-                column("duration_s", Align::Right)},
+               {column("drive"), column("description"), column("phases", Align::Right), duration_column()},
                {},
                {s.description}};
   for (const simulate::Drive& d : s.drives)
@@ -142,7 +161,8 @@ std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
 std::vector<Table> detail_tables(const DynamicsScenario& s) {
   Table segments{"segments",
                  fmt::format("Segments of {}", s.name),
-                 {column("until_s"), column("voltages_V"), column("steering_deg")},
+                 {named("until_s", "until [s]"), named("voltages_V", "voltages [V]"),
+                  named("steering_deg", "steering [deg]")},
                  {},
                  {s.description}};
   for (const dynamics::Segment& g : s.setup.segments) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -23,6 +24,14 @@ void line(const char* kind, std::string text) {
   std::fwrite(whole.data(), 1, whole.size(), stderr);
 }
 
+// https://no-color.org: any value but the empty one asks for plain text.
+bool bold_is_welcome() {
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return ::isatty(STDOUT_FILENO) == 1 && (no_color == nullptr || *no_color == 0) &&
+         (terminal == nullptr || std::string(terminal) != "dumb");
+}
+
 }  // namespace
 
 void print_text(const std::string& text) {
@@ -31,13 +40,13 @@ void print_text(const std::string& text) {
 }
 
 void print_tables(const std::vector<Table>& tables, Format format) {
-  print_text(render(tables, format, {terminal_width(STDOUT_FILENO, kPlainWidth)}));
+  print_text(render(tables, format, {terminal_width(STDOUT_FILENO, kPlainWidth), bold_is_welcome()}));
 }
 
 void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder) {
   FileTransaction files;
   for (const Format format : {Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex})
-    files.add(folder / ("tables." + file_extension(format)), render(tables, format, {kPlainWidth}));
+    files.add(folder / ("tables." + file_extension(format)), render(tables, format, {kPlainWidth, false}));
   files.commit();
 }
 

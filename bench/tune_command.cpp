@@ -74,16 +74,17 @@ Table sigma_table(const Problem& problem, const std::vector<Setting>& settings,
 }
 
 Table result_table(const std::vector<Setting>& settings, const Split& s, const std::string& objective) {
-  Table table{
-      "tuning",
-      fmt::format("Tuning by {} on {} recordings, judged on {}{}", objective, s.training.size(),
-                  s.held_out.empty() ? s.training.size() : s.held_out.size(),
-                  s.held_out.empty() ? " (the same ones: there are no others)" : " others"),
-      {column("setting", "setting", "", true), column("cost", "cost"), column("evaluations", "evaluations"),
-       column("rmse_position", "RMSE position", "m"), column("rmse_heading", "RMSE heading", "rad"),
-       column("nees", "NEES"), column("verdict", "verdict", "", true), column("stop", "stop", "", true)},
-      {},
-      {}};
+  Table table{"tuning",
+              fmt::format("Tuning by {} on {} recordings, judged on {}{}", objective, s.training.size(),
+                          s.held_out.empty() ? s.training.size() : s.held_out.size(),
+                          s.held_out.empty() ? " (the same ones: there are no others)" : " others"),
+              {column("setting", "setting", "", true), best_if(Better::Lower, column("cost", "cost")),
+               column("evaluations", "evaluations"),
+               best_if(Better::Lower, column("rmse_position", "RMSE position", "m")),
+               best_if(Better::Lower, column("rmse_heading", "RMSE heading", "rad")), column("nees", "NEES"),
+               column("verdict", "verdict", "", true), column("stop", "stop", "", true)},
+              {},
+              {}};
   for (const Setting& one : settings)
     table.rows.push_back({text_cell(one.label), significant_cell(one.cost, 8), count_cell(one.evaluations),
                           fixed_cell(one.held_out.row.rmse_position, 6),

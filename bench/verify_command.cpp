@@ -122,7 +122,8 @@ class TableMaker {
       : sets_(sets), outcomes_(outcomes) {}
 
   Table start(std::string id, std::string title) const {
-    Table t{std::move(id), std::move(title), {key("parameters")}, {}, {}};
+    Table t{
+        std::move(id), std::move(title), {key("parameters")}, {}, {}, {0}};  // differences are to the first
     for (const ParameterSet& set : sets_) t.rows.push_back({text_cell(set.label)});
     return t;
   }
@@ -135,7 +136,7 @@ class TableMaker {
     interval.name = "±";
     mean.unit = interval.unit = unit;
     mean.group = interval.group = group;
-    t.columns.push_back(std::move(mean));
+    t.columns.push_back(best_if(Better::Lower, std::move(mean)));
     t.columns.push_back(std::move(interval));
     const double nominal = estimate(picked(outcomes_.front(), pick)).mean;
     for (std::size_t i = 0; i < sets_.size(); ++i) {

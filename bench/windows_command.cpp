@@ -81,13 +81,14 @@ void add_statistics(const LoadedWindow& w, const Vector& t, RunRecord& record) {
 class WindowRecorder final : public CellWatcher {
  public:
   WindowRecorder(const LoadedWindow& window, const std::string& dataset, const std::string& sha256,
-                 const std::vector<RunCell>& cells, std::uint64_t base_seed, const RunContext& context,
-                 RecordFile* file, ProgressLine& progress, std::size_t first)
+                 const std::vector<RunCell>& cells, std::uint64_t base_seed, const Budget& budget,
+                 const RunContext& context, RecordFile* file, ProgressLine& progress, std::size_t first)
       : window_(window),
         dataset_(dataset),
         sha256_(sha256),
         cells_(cells),
         base_seed_(base_seed),
+        budget_(budget),
         context_(context),
         file_(file),
         progress_(progress),
@@ -99,7 +100,7 @@ class WindowRecorder final : public CellWatcher {
     progress_.progressed(first_ + cell, progress);
   }
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    RunRecord r = run_record(window_.loaded, cells_[cell], base_seed_, result, context_, time_utc);
+    RunRecord r = run_record(window_.loaded, cells_[cell], base_seed_, budget_, result, context_, time_utc);
     r.dataset = dataset_;
     r.dataset_sha256 = sha256_;
     r.group = window_.window.group;
@@ -124,6 +125,7 @@ class WindowRecorder final : public CellWatcher {
   const std::string dataset_, sha256_;
   const std::vector<RunCell>& cells_;
   const std::uint64_t base_seed_;
+  const Budget& budget_;
   const RunContext& context_;
   RecordFile* file_;
   ProgressLine& progress_;
@@ -220,8 +222,8 @@ ExitCode windows_command(const WindowsOptions& options) {
     if (InterruptGuard::flag().load()) break;  // what results are measured against is not known
     plan.dataset = stem + "/" + windows[i].id;
     const std::vector<RunCell> cells = plan_cells(plan, ignored);
-    WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, context, file.get(),
-                            progress, i * per_window);
+    WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, options.budget, context,
+                            file.get(), progress, i * per_window);
     run_cells(window.loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
     recorder.move_to(records);
   }

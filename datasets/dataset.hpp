@@ -71,9 +71,9 @@ struct Dataset {
 Dataset load_dataset(const std::filesystem::path& set_json);
 
 // Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings"
-// beside it. Everything is written to temporary names and renamed when complete. Throws DataError when it
-// cannot be written.
-void save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
-                  bool inline_recordings = false);
+// beside it. Everything is written to temporary names and renamed when complete. Returns what was written. Throws DataError
+// when it cannot be.
+std::vector<std::filesystem::path> save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
+                                                bool inline_recordings = false);
 
 }  // namespace odobench

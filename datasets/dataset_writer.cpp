@@ -99,7 +99,7 @@ void check(const Dataset& d, const std::string& file) {
 
 }  // namespace
 
-void save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings) {
+std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings) {
   check(d, set_json.string());
   FileTransaction files;
   const std::string folder = set_json.stem().string() + "_recordings";
@@ -137,7 +137,9 @@ void save_dataset(const Dataset& d, const fs::path& set_json, bool inline_record
     throw DataError(fmt::format("{}: cannot be written: {}", set_json.string(), e.what()));
   }
   files.add(set_json, text);  // last: it refers to the others
+  std::vector<fs::path> written = files.targets();
   files.commit();
+  return written;
 }
 
 }  // namespace odobench

@@ -129,6 +129,12 @@ void FileTransaction::append(std::string_view bytes) {
   if (!d.close()) fail(entry.target, "cannot be written", last_error());
 }
 
+std::vector<fs::path> FileTransaction::targets() const {
+  std::vector<fs::path> list;
+  for (const Entry& entry : entries_) list.push_back(entry.target);
+  return list;
+}
+
 void FileTransaction::commit() {
   std::error_code e;
   for (Entry& entry : entries_) {

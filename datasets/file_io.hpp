@@ -38,6 +38,8 @@ class FileTransaction {
   // More bytes for the file added last: files that are too long to be put together in memory.
   void append(std::string_view bytes);
   void commit();
+  // What was added and not yet committed, in this order.
+  std::vector<std::filesystem::path> targets() const;
 
  private:
   struct Entry {

@@ -4,15 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "reports/comparison.hpp"
 #include "reports/json_view.hpp"
+#include "reports/metrics.hpp"
 
 namespace odobench {
 namespace {
 
 using nlohmann::json;
+
+// Metrics that are kept run by run, and their names in the file.
+constexpr std::array<std::pair<const char*, const char*>, 3> kSamples{
+    {{"J", "cost"}, {"total", "total"}, {"evaluations", "evaluations"}}};
 
 double tolerance_from(const JsonView& view) {
   const std::optional<double> value = view.optional_number();
@@ -51,8 +57,8 @@ TrajectoryErrors errors_from(const std::string& trajectory, const JsonView& view
 }
 
 BaselineEntry entry_from(const JsonView& view, const Tolerances& defaults) {
-  view.only_keys(
-      {"problem", "dataset", "label", "kind", "cost", "evaluations", "totals", "errors", "tolerances"});
+  view.only_keys({"problem", "dataset", "label", "kind", "cost", "evaluations", "totals", "errors", "samples",
+                  "tolerances"});
   BaselineEntry entry;
   entry.problem = view.at("problem").string();
   entry.dataset = view.at("dataset").string();
@@ -71,6 +77,16 @@ BaselineEntry entry_from(const JsonView& view, const Tolerances& defaults) {
     errors->each_field([&](const std::string& trajectory, const JsonView& cells) {
       entry.errors.push_back(errors_from(trajectory, cells));
     });
+  if (const auto samples = view.find("samples")) {
+    samples->only_keys({"cost", "evaluations", "total"});
+    samples->each_field([&](const std::string& name, const JsonView& values) {
+      std::vector<double>& sample = entry.samples[name];
+      values.each_item([&](const JsonView& value) {
+        sample.push_back(value.optional_number().value_or(std::numeric_limits<double>::infinity()));
+      });
+      if (sample.empty()) values.fail("at least one number");
+    });
+  }
   const auto own = view.find("tolerances");
   entry.tolerances = own ? tolerances_from(*own, defaults, false) : defaults;
   return entry;
@@ -147,6 +163,13 @@ std::string entry_text(const BaselineEntry& e, const Tolerances& defaults) {
                        text(finite_or_null(e.totals->sums[0])), text(finite_or_null(e.totals->sums[1])),
                        text(finite_or_null(e.totals->sums[2])), text(finite_or_null(e.totals->total)));
   if (!e.errors.empty()) out += fmt::format(",\n      \"errors\": {{{}}}", errors_text(e.errors));
+  std::string samples;
+  for (const auto& [name, values] : e.samples) {
+    json list = json::array();
+    for (const double value : values) list.push_back(finite_or_null(value));
+    samples += fmt::format("{}\n        {}: {}", samples.empty() ? "" : ",", text(name), text(list));
+  }
+  if (!samples.empty()) out += fmt::format(",\n      \"samples\": {{{}}}", samples);
   if (const json own = changed_tolerances(e.tolerances, defaults); !own.empty())
     out += fmt::format(",\n      \"tolerances\": {}", text(own));
   return out + "\n    }";
@@ -206,6 +229,10 @@ Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& 
           entry.errors.begin(), entry.errors.end(),
           [](const TrajectoryErrors& a, const TrajectoryErrors& b) { return a.trajectory < b.trajectory; });
       if (!row.errors.empty()) entry.totals = error_totals(row.errors);
+      if (row.kind == "run" && row.runs.size() > 1)
+        for (const Metric& metric : metrics_of(row))
+          for (const auto& [name, sample] : kSamples)
+            if (metric.name == name) entry.samples[sample] = metric.values;
       entry.tolerances = tolerances;
       baseline.entries.push_back(std::move(entry));
     }

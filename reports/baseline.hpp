@@ -14,10 +14,17 @@
 // the factor is null or the entry has no "evaluations". "tolerances" of an entry override those of the file
 // one by one. null stands for a value that was not finite and is met only by such a value. Keys other than
 // these are errors.
+//
+// An entry of a label that ran several times may keep what each run gave (`"samples": {"cost": [..], "evaluations": [..],
+// "total": [..]}`, null for a run without a result). Where the records have several runs of the label too, these three are
+// compared as samples instead: a median must leave its tolerance AND Mann-Whitney's test (reports/rank_test.hpp) must be
+// significant, p <= kSampleAlpha after Holm's correction over all samples of the file. Two numbers of a random solver differ for no
+// reason, so the cells of its median run are not compared then. Any other entry is compared value by value.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +37,7 @@
 namespace odobench {
 
 inline constexpr int kBaselineSchemaVersion = 1;
+inline constexpr double kSampleAlpha = 0.05;
 
 struct Tolerances {
   double cost_relative = 1e-6;
@@ -45,6 +53,8 @@ struct BaselineEntry {
   std::optional<std::int64_t> evaluations;
   std::vector<TrajectoryErrors> errors;
   std::optional<Totals> totals;
+  std::map<std::string, std::vector<double>>
+      samples;            // of labels with several runs; +infinity for a failed one
   Tolerances tolerances;  // in force for this entry
 };
 
@@ -58,7 +68,7 @@ struct Baseline {
 Baseline read_baseline(const std::string& path);
 
 // One entry per label, its trajectories in alphabetical order; of several runs with one label the median run
-// by J, as in the tables. Throws std::invalid_argument when there is no record, a tolerance is negative or
+// by J, as in the tables, and the samples. Throws std::invalid_argument when there is no record, a tolerance is negative or
 // not finite, or two results have one name.
 Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& tolerances = {});
 

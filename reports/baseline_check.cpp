@@ -4,6 +4,8 @@
 
 #include "reports/baseline.hpp"
 #include "reports/comparison.hpp"
+#include "reports/metrics.hpp"
+#include "reports/rank_test.hpp"
 
 namespace odobench {
 namespace {
@@ -40,6 +42,7 @@ class Check {
     }
     ++compared_;
     const Tolerances& t = expected.tolerances;
+    if (!expected.samples.empty() && found.runs.size() > 1) return samples(expected, found);
     optional_number("J", expected.cost, found.shown->cost,
                     t.cost_relative * std::abs(expected.cost.value_or(0)));
     if (expected.evaluations && t.evaluations_factor && found.kind == "run")
@@ -56,6 +59,7 @@ class Check {
   void additional_label() { add("additional", "label", Cell{}, Cell{}, false); }
 
   BaselineReport finish(const std::string& source) {
+    judge_samples();
     const std::size_t rows = report_.table.rows.size();
     report_.table.notes.push_back(fmt::format("{} values compared{}: {}.", compared_,
                                               source.empty() ? "" : fmt::format(" with {}", source),
@@ -105,6 +109,63 @@ class Check {
     report_.table.rows.back()[7] = significant_cell(limit - static_cast<double>(expected), 6);
   }
 
+  // What several runs of one label gave; judged together, at the end.
+  struct Sample {
+    std::string problem, label, cell;
+    double expected, found;  // medians
+    double tolerance;
+    RankTest test;
+  };
+
+  void samples(const BaselineEntry& expected, const ComparisonRow& found) {
+    const std::vector<Metric> metrics = metrics_of(found);
+    const auto add_sample = [&](const char* key, const char* metric, const char* shown,
+                                const auto& tolerance) {
+      const auto before = expected.samples.find(key);
+      if (before == expected.samples.end()) return;
+      const Metric* after = find_metric(metrics, metric);
+      if (after == nullptr) return add("missing", shown, Cell{}, Cell{}, true);
+      const double old_median = spread(before->second).median, new_median = spread(after->values).median;
+      samples_.push_back({problem_, label_, shown, old_median, new_median, tolerance(old_median),
+                          rank_test(before->second, after->values)});
+    };
+    const Tolerances& t = expected.tolerances;
+    add_sample("cost", "J", "J", [&](double median) { return t.cost_relative * std::abs(median); });
+    add_sample("total", "total", "totals total", [&](double) { return t.total; });
+    if (t.evaluations_factor)
+      add_sample("evaluations", "evaluations", "evaluations",
+                 [&](double median) { return (*t.evaluations_factor - 1) * median; });
+  }
+
+  void judge_samples() {
+    std::vector<double> p_values;
+    for (const Sample& s : samples_) p_values.push_back(s.test.p);
+    const std::vector<double> adjusted = holm(p_values);
+    std::size_t unsure = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const Sample& s = samples_[i];
+      ++compared_;
+      const bool both = std::isfinite(s.expected) && std::isfinite(s.found);
+      const double moved = s.cell == "evaluations" ? s.found - s.expected : std::abs(s.found - s.expected);
+      if (both ? moved <= s.tolerance : std::isfinite(s.expected) == std::isfinite(s.found)) continue;
+      if (adjusted[i] > kSampleAlpha) {
+        ++unsure;
+        continue;
+      }
+      problem_ = s.problem;
+      label_ = s.label;
+      add("moved", fmt::format("{}, median (p = {:.2g})", s.cell, adjusted[i]),
+          significant_cell(s.expected, 10), significant_cell(s.found, 10), true);
+      if (both) report_.table.rows.back()[6] = significant_cell(s.found - s.expected, 3);
+      report_.table.rows.back()[7] = significant_cell(s.tolerance, 3);
+    }
+    if (samples_.empty()) return;
+    report_.table.notes.push_back(
+        fmt::format("{} medians over several runs were judged by rank tests too (p <= {:g} after Holm's "
+                    "correction); outside their tolerance without being significant: {}.",
+                    samples_.size(), kSampleAlpha, unsure));
+  }
+
   void totals(const Totals& expected, const Totals& found, double tolerance) {
     for (std::size_t v = 0; v < 3; ++v)
       number(fmt::format("totals {}", kPoseVariables[v]), expected.sums[v], found.sums[v], tolerance);
@@ -127,6 +188,7 @@ class Check {
 
   BaselineReport report_;
   std::string problem_, label_;
+  std::vector<Sample> samples_;
   std::size_t compared_ = 0;
 };
 

@@ -74,11 +74,12 @@ Table trajectory_table(const Comparison& comparison, const std::string& trajecto
   table.id = comparison.id_prefix + "errors." + trajectory;
   table.title = fmt::format("Errors on trajectory {}{}", trajectory, comparison.title_suffix);
   table.columns.push_back(key_column("parameters"));
-  for (Column& column : error_columns()) table.columns.push_back(std::move(column));
+  for (Column& column : error_columns()) table.columns.push_back(best_if(Better::Lower, std::move(column)));
   const ComparisonRow* nominal = comparison.nominal();
   const TrajectoryErrors* reference = nominal ? find_trajectory(nominal->errors, trajectory) : nullptr;
   for (const ComparisonRow& row : comparison.rows) {
     if (!belongs(row)) continue;
+    add_reference(table, row);
     std::vector<Cell> cells{text_cell(row.label)};
     append_cells(cells, find_trajectory(row.errors, trajectory), &row == nominal ? nullptr : reference);
     table.rows.push_back(std::move(cells));
@@ -94,7 +95,7 @@ std::vector<std::string> common_notes(const Comparison& comparison) {
 }
 
 Column sum_column(std::string id, std::string name, std::string unit, std::string latex) {
-  return {std::move(id), std::move(name), std::move(unit), std::move(latex), ""};
+  return best_if(Better::Lower, {std::move(id), std::move(name), std::move(unit), std::move(latex), "sum"});
 }
 
 // Sums over different trajectories must not be compared.
@@ -123,6 +124,10 @@ std::vector<Cell> totals_row(const ComparisonRow& row, const Comparison& compari
 }
 
 }  // namespace
+
+void add_reference(Table& table, const ComparisonRow& row) {
+  if (row.kind == "evaluation" && row.label == "nominal") table.references.push_back(table.rows.size());
+}
 
 std::vector<Table> error_tables(const Comparison& comparison) {
   std::vector<Table> tables;
@@ -167,10 +172,13 @@ std::optional<Table> totals_table(const Comparison& comparison) {
                    sum_column("sum_e_sr_y", "Σ e_y,sr", "m", "$\\sum e_{y,\\mathrm{sr}}$"),
                    sum_column("sum_e_sr_theta", "Σ e_θ,sr", "rad", "$\\sum e_{\\theta,\\mathrm{sr}}$"),
                    sum_column("total", "total", "", ""),
-                   sum_column("change", "change", "", ""),
-                   sum_column("change_percent", "change", "%", "")};
-  for (const ComparisonRow& row : comparison.rows)
-    if (belongs(row)) table.rows.push_back(totals_row(row, comparison));
+                   {"change", "change", "", "", "change"},
+                   {"change_percent", "change", "%", "", "change"}};
+  for (const ComparisonRow& row : comparison.rows) {
+    if (!belongs(row)) continue;
+    add_reference(table, row);
+    table.rows.push_back(totals_row(row, comparison));
+  }
   table.notes.push_back(
       fmt::format("Sums of e_sr over {} trajectories; the total adds metres and radians, as in the thesis; "
                   "change: to nominal.",

@@ -27,25 +27,26 @@ Cell factor_cell(const std::optional<double>& before, const std::optional<double
 
 Table method_table(const std::vector<RunRecord>& records) {
   Table table{"filter", "Relative-entropy filter", {}, {}, {}};
-  table.columns = {{"data", "data", "", "", "", Align::Left},
-                   {"method", "method", "", "", "", Align::Left},
-                   {"rows", "rows", "", "", "size"},
-                   {"windows", "windows", "", "", "size"},
-                   {"iterations_mean", "iterations, mean", "", "", "search"},
-                   {"iterations_max", "max", "", "", "search"},
-                   {"evaluations_mean", "evaluations, mean", "", "", "search"},
-                   {"hamiltonian_mean", "H, mean", "", "", "hamiltonian"},
-                   {"hamiltonian_min", "min", "", "", "hamiltonian"},
-                   {"hamiltonian_max", "max", "", "", "hamiltonian"},
-                   {"gain_mean", "above zero increments, mean", "", "", "gain"},
-                   {"gain_max", "max", "", "", "gain"},
-                   {"gap_exact_mean", "below the optimum, mean", "", "", "gap"},
-                   {"gap_exact_max", "max", "", "", "gap"},
-                   {"at_optimum", "at it", "%", "", "gap"},
-                   {"gap_relaxed_mean", "below the relaxation, mean", "", "", "relaxation"},
-                   {"gap_relaxed_max", "max", "", "", "relaxation"},
-                   {"seconds", "time", "s", "", "speed"},
-                   {"windows_per_second", "windows/s", "", "", "speed"}};
+  table.columns = {
+      {"data", "data", "", "", "", Align::Left},
+      {"method", "method", "", "", "", Align::Left},
+      {"rows", "rows", "", "", "size"},
+      {"windows", "windows", "", "", "size"},
+      {"iterations_mean", "iterations, mean", "", "", "search"},
+      {"iterations_max", "max", "", "", "search"},
+      best_if(Better::Lower, {"evaluations_mean", "evaluations, mean", "", "", "search"}),
+      {"hamiltonian_mean", "H, mean", "", "", "hamiltonian"},
+      {"hamiltonian_min", "min", "", "", "hamiltonian"},
+      {"hamiltonian_max", "max", "", "", "hamiltonian"},
+      {"gain_mean", "above zero increments, mean", "", "", "gain"},
+      {"gain_max", "max", "", "", "gain"},
+      best_if(Better::Lower, {"gap_exact_mean", "below the optimum, mean", "", "", "gap"}),
+      best_if(Better::Lower, {"gap_exact_max", "max", "", "", "gap"}),
+      best_if(Better::Higher, {"at_optimum", "at it", "%", "", "gap"}),
+      best_if(Better::Lower, {"gap_relaxed_mean", "below the relaxation, mean", "", "", "relaxation"}),
+      best_if(Better::Lower, {"gap_relaxed_max", "max", "", "", "relaxation"}),
+      best_if(Better::Lower, {"seconds", "time", "s", "", "speed"}),
+      best_if(Better::Higher, {"windows_per_second", "windows/s", "", "", "speed"})};
   bool gaps = false;
   for (const RunRecord& r : records) {
     const auto at_optimum = figure(r, "at_optimum");
@@ -119,8 +120,8 @@ std::optional<Table> track_table(const RunRecord& record) {
               {},
               {}};
   table.columns = {{"from", "from", "", "", "", Align::Left},
-                   {"end", "at the end", "m", "", ""},
-                   {"max", "at most", "m", "", ""}};
+                   best_if(Better::Lower, {"end", "at the end", "m", "", ""}),
+                   best_if(Better::Lower, {"max", "at most", "m", "", ""})};
   const std::array<const char*, 3> names{"measurements", "filter", "zero increments"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto end = figure(record, std::string("track.end.") + kNoiseStages[i]);

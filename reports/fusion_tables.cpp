@@ -28,8 +28,8 @@ Table consistency_table(const std::vector<FusionRow>& rows) {
   table.id = "consistency";
   table.title = "Root mean square errors, and whether the covariance says so";
   table.columns = {column("label", "parameters", "", Align::Left),
-                   column("rmse_position", "RMSE position", "m"),
-                   column("rmse_heading", "RMSE heading", "rad"),
+                   best_if(Better::Lower, column("rmse_position", "RMSE position", "m")),
+                   best_if(Better::Lower, column("rmse_heading", "RMSE heading", "rad")),
                    column("nees", "NEES"),
                    column("nees_band", "95 % band"),
                    column("nees_inside", "inside", "%"),

@@ -112,6 +112,9 @@ void read_identity(const JsonView& view, RunRecord& r) {
   r.base_seed = view.at("base_seed").unsigned_integer();
   r.repetition = view.at("repetition").small_integer();
   r.start = view.at("start").string();
+  if (const auto budget = view.find("budget"))
+    budget->each_field(
+        [&](const std::string& key, const JsonView& value) { r.budget[key] = value.number(); });
 }
 
 void read_outcome(const JsonView& view, RunRecord& r) {
@@ -178,6 +181,7 @@ json to_json(const RunRecord& r) {
            {"time_utc", r.time_utc}};
   for (const auto& [key, value] : r.options) out["options"][key] = value;
   if (!r.group.empty()) out["group"] = r.group;
+  for (const auto& [key, value] : r.budget) out["budget"][key] = finite_or_null(value);
   for (const auto& [key, value] : r.statistics) out["statistics"][key] = finite_or_null(value);
   for (const auto& [key, values] : r.series) {
     json list = json::array();

@@ -61,6 +61,8 @@ struct RunRecord {
   std::uint64_t base_seed = 0;
   int repetition = 1;  // of the run, 1-based
   std::string start;   // nominal | random
+  // Limits in force: max_evaluations, max_seconds (0: none), target. Empty in records of versions that did not write it.
+  std::map<std::string, double> budget;
 
   std::string termination;  // converged, target_reached, max_evaluations, ...
   std::string message;      // the sentence with both numbers, or why it was skipped

@@ -8,7 +8,8 @@
 namespace odobench {
 namespace {
 
-constexpr int kGutter = 2;      // cells between columns
+constexpr int kGutter = 2;  // cells between columns
+constexpr const char* kStarNote = "*: best of its column.";
 constexpr int kNarrowest = 24;  // text columns are wrapped down to this width before a table is split
 
 // One column laid out: numbers stand under numbers and brackets under brackets.
@@ -27,7 +28,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-Layout lay_out(const Table& table, std::size_t column) {
+Layout lay_out(const Table& table, std::size_t column, bool bold) {
   const Column& spec = table.columns[column];
   Layout out;
   out.column = column;
@@ -36,6 +37,7 @@ Layout lay_out(const Table& table, std::size_t column) {
     CellText text = cell_text(row[column]);
     text.head = one_line(text.head);
     text.tail = one_line(text.tail);
+    if (row[column].best && !bold) text.tail += text.tail.empty() ? "*" : " *";
     if (row[column].value) out.wraps = false;
     out.head = std::max(out.head, display_width(text.head));
     out.tail = std::max(out.tail, display_width(text.tail));
@@ -67,8 +69,8 @@ void shrink(std::vector<Layout>& columns, int limit) {
 
 // Blocks of columns that fit, each beginning with the first column; a group is cut only when it alone is too
 // wide.
-std::vector<std::vector<Layout>> split(const Table& table, int limit) {
-  const Layout key = lay_out(table, 0);
+std::vector<std::vector<Layout>> split(const Table& table, int limit, bool bold) {
+  const Layout key = lay_out(table, 0, bold);
   std::vector<std::vector<Layout>> blocks{{key}};
   for (std::size_t at = 1; at < table.columns.size();) {
     std::size_t end = at + 1;
@@ -76,7 +78,7 @@ std::vector<std::vector<Layout>> split(const Table& table, int limit) {
            table.columns[end].group == table.columns[at].group)
       ++end;
     std::vector<Layout> group, extended = blocks.back();
-    for (; at < end; ++at) group.push_back(lay_out(table, at));
+    for (; at < end; ++at) group.push_back(lay_out(table, at, bold));
     extended.insert(extended.end(), group.begin(), group.end());
     if (total_width(extended, true) <= limit) {
       blocks.back() = std::move(extended);
@@ -118,7 +120,16 @@ void append_header(std::string& out, const Table& table, const std::vector<Layou
   if (any_unit) append_line(out, units);
 }
 
-void append_row(std::string& out, const Table& table, const std::vector<Layout>& block, std::size_t row) {
+// Around the text, not the blanks beside it.
+std::string in_bold(const std::string& cell) {
+  const std::size_t begin = cell.find_first_not_of(' '), end = cell.find_last_not_of(' ');
+  if (begin == std::string::npos) return cell;
+  return cell.substr(0, begin) + "\x1b[1m" + cell.substr(begin, end + 1 - begin) + "\x1b[0m" +
+         cell.substr(end + 1);
+}
+
+void append_row(std::string& out, const Table& table, const std::vector<Layout>& block, std::size_t row,
+                bool bold) {
   std::vector<std::vector<std::string>> lines;
   std::size_t height = 1;
   for (const Layout& c : block) {
@@ -137,7 +148,8 @@ void append_row(std::string& out, const Table& table, const std::vector<Layout>&
     std::string line;
     for (std::size_t b = 0; b < block.size(); ++b) {
       if (b > 0) line.append(kGutter, ' ');
-      line += pad_right(k < lines[b].size() ? lines[b][k] : "", block[b].width);
+      const std::string cell = pad_right(k < lines[b].size() ? lines[b][k] : "", block[b].width);
+      line += bold && table.rows[row][block[b].column].best ? in_bold(cell) : cell;
     }
     append_line(out, line);
   }
@@ -149,9 +161,9 @@ std::string rule(int width) {
   return line + "\n";
 }
 
-void append_table(std::string& out, const Table& table, int limit) {
+void append_table(std::string& out, const Table& table, int limit, bool bold, bool explain) {
   for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
-  std::vector<std::vector<Layout>> blocks = split(table, limit);
+  std::vector<std::vector<Layout>> blocks = split(table, limit, bold);
   std::vector<int> widths;
   for (std::vector<Layout>& block : blocks) {
     shrink(block, limit);
@@ -161,21 +173,32 @@ void append_table(std::string& out, const Table& table, int limit) {
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     append_header(out, table, blocks[b]);
     out += rule(widths[b]);
-    for (std::size_t row = 0; row < table.rows.size(); ++row) append_row(out, table, blocks[b], row);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) append_row(out, table, blocks[b], row, bold);
     out += rule(b + 1 < blocks.size() ? std::max(widths[b], widths[b + 1]) : widths[b]);
   }
+  if (explain) append_line(out, kStarNote);
   for (const std::string& note : table.notes)
     for (const std::string& line : wrap_text(one_line(note), limit)) append_line(out, line);
 }
 
+bool any_best(const Table& table) {
+  for (const auto& row : table.rows)
+    for (const Cell& cell : row)
+      if (cell.best) return true;
+  return false;
+}
+
 }  // namespace
 
-std::string render_console(const std::vector<Table>& tables, int width) {
-  const int limit = width > 0 ? width : std::numeric_limits<int>::max() / 4;
+std::string render_console(const std::vector<Table>& tables, const RenderOptions& options) {
+  const int limit = options.width > 0 ? options.width : std::numeric_limits<int>::max() / 4;
   std::string out;
+  bool explained = options.bold;
   for (const Table& table : tables) {
     if (!out.empty()) out += "\n";
-    append_table(out, table, limit);
+    const bool explain = !explained && any_best(table);
+    append_table(out, table, limit, options.bold, explain);
+    explained = explained || explain;
   }
   return out;
 }

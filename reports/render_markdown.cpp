@@ -32,7 +32,17 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+std::string cell_markdown(const Cell& cell) {
+  const CellText text = cell_text(cell);
+  if (!cell.best) return escaped(whole_text(text));
+  return fmt::format("**{}**{}{}", escaped(text.head), text.tail.empty() ? "" : " ", escaped(text.tail));
+}
+
 }  // namespace
+
+std::string markdown_note(const std::string& note) {
+  return fmt::format("- {}\n", escaped(note));
+}
 
 std::string render_markdown(const std::vector<Table>& tables) {
   std::string out;
@@ -45,11 +55,11 @@ std::string render_markdown(const std::vector<Table>& tables) {
     out += "\n";
     for (const auto& row : table.rows) {
       out += "|";
-      for (const Cell& cell : row) out += fmt::format(" {} |", escaped(whole_text(cell_text(cell))));
+      for (const Cell& cell : row) out += fmt::format(" {} |", cell_markdown(cell));
       out += "\n";
     }
     if (!table.notes.empty()) out += "\n";
-    for (const std::string& note : table.notes) out += fmt::format("- {}\n", escaped(note));
+    for (const std::string& note : table.notes) out += markdown_note(note);
   }
   return out;
 }

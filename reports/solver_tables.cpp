@@ -8,7 +8,8 @@
 namespace odobench {
 namespace {
 
-constexpr int kCostDigits = 10;
+constexpr int kCostDigits = 10;   // enough to see which solvers end in the same point
+constexpr int kSpreadDigits = 8;  // of random runs
 
 Column column(std::string id, std::string name, std::string unit, std::string group,
               Align align = Align::Right, std::string latex = "") {
@@ -33,9 +34,9 @@ Cell gap_to_best(const std::optional<double>& best, const RunRecord& record) {
 
 std::vector<Column> cost_columns() {
   return {column("parameters", "parameters", "", "", Align::Left),
-          column("cost", "J", "", "cost", Align::Right, "$J$"),
+          best_if(Better::Lower, column("cost", "J", "", "cost", Align::Right, "$J$")),
           column("cost_ratio", "J / J_nominal", "", "cost", Align::Right, "$J / J_{\\mathrm{nominal}}$"),
-          column("gap", "gap to best", "", "cost")};
+          best_if(Better::Lower, column("gap", "gap to best", "", "cost"))};
 }
 
 constexpr const char* kGapNote =
@@ -98,10 +99,10 @@ void append_spread(std::vector<Cell>& cells, const std::vector<double>& values, 
 
 void append_spread_columns(std::vector<Column>& columns, const std::string& id, const std::string& name,
                            const std::string& unit) {
-  columns.push_back(column(id + "_median", name + " median", unit, id));
-  columns.push_back(column(id + "_min", "min", unit, id));
-  columns.push_back(column(id + "_max", "max", unit, id));
-  columns.push_back(column(id + "_iqr", "IQR", unit, id));
+  columns.push_back(best_if(Better::Lower, column(id + "_median", name + " median", unit, id)));
+  columns.push_back(best_if(Better::Lower, column(id + "_min", "min", unit, id)));
+  columns.push_back(best_if(Better::Lower, column(id + "_max", "max", unit, id)));
+  columns.push_back(best_if(Better::Lower, column(id + "_iqr", "IQR", unit, id)));
 }
 
 std::vector<Cell> repeats_row(const ComparisonRow& row, const std::optional<double>& best, double scale) {
@@ -115,7 +116,7 @@ std::vector<Cell> repeats_row(const ComparisonRow& row, const std::optional<doub
                           count_cell(static_cast<double>(row.runs.size() - costs.size()))};
   for (double relative : {1e-6, 1e-2})
     cells.push_back(best ? count_cell(count_within(row, *best, scale, relative)) : Cell{});
-  append_spread(cells, costs, [](double v) { return significant_cell(v, kCostDigits); });
+  append_spread(cells, costs, [](double v) { return significant_cell(v, kSpreadDigits); });
   append_spread(cells, evaluations, [](double v) { return significant_cell(v, 9); });
   append_spread(cells, seconds, [](double v) { return fixed_cell(v, 3); });
   return cells;
@@ -133,15 +134,17 @@ Table solver_table(const Comparison& comparison) {
       std::any_of(comparison.rows.begin(), comparison.rows.end(),
                   [](const ComparisonRow& row) { return row.shown->cost_before_polish.has_value(); });
   if (polished) table.columns.push_back(column("cost_before_polish", "J unpolished", "", "cost"));
-  table.columns.push_back(column("evaluations", "evaluations", "", "effort"));
+  table.columns.push_back(best_if(Better::Lower, column("evaluations", "evaluations", "", "effort")));
   table.columns.push_back(column("iterations", "iterations", "", "effort"));
-  table.columns.push_back(column("seconds", "time", "s", "effort"));
+  table.columns.push_back(best_if(Better::Lower, column("seconds", "time", "s", "effort")));
   table.columns.push_back(column("termination", "stop", "", "stop", Align::Left));
   table.columns.push_back(column("message", "reason", "", "stop", Align::Left));
   table.columns.push_back(column("active_bounds", "active bounds", "", "stop", Align::Left));
   const std::optional<double> best = comparison.best_cost();
-  for (const ComparisonRow& row : comparison.rows)
+  for (const ComparisonRow& row : comparison.rows) {
+    add_reference(table, row);
     table.rows.push_back(solver_row(comparison, row, best, polished));
+  }
   table.notes.push_back(kGapNote);
   if (const std::string median = median_note(comparison); !median.empty()) table.notes.push_back(median);
   return table;
@@ -154,10 +157,12 @@ Table cost_table(const Comparison& comparison) {
   table.columns = cost_columns();
   table.columns.push_back(column("active_bounds", "active bounds", "", "", Align::Left));
   const std::optional<double> best = comparison.best_cost();
-  for (const ComparisonRow& row : comparison.rows)
+  for (const ComparisonRow& row : comparison.rows) {
+    add_reference(table, row);
     table.rows.push_back({text_cell(row.label), cost_cell(row.shown->cost),
                           ratio_to_nominal(comparison, *row.shown), gap_to_best(best, *row.shown),
                           text_cell(active_bounds(*row.shown))});
+  }
   if (comparison.rows.size() > 1) table.notes.push_back(kGapNote);
   return table;
 }
@@ -167,9 +172,9 @@ std::optional<Table> repeats_table(const Comparison& comparison) {
   table.id = comparison.id_prefix + "repeats";
   table.title = fmt::format("Spread over repeated runs{}", comparison.title_suffix);
   table.columns = {column("solver", "solver", "", "", Align::Left), column("runs", "runs", "", "success"),
-                   column("failed", "failed", "", "success"),
-                   column("within_1e-6", "within 1e-6", "", "success"),
-                   column("within_1_percent", "within 1 %", "", "success")};
+                   best_if(Better::Lower, column("failed", "failed", "", "success")),
+                   best_if(Better::Higher, column("within_1e-6", "within 1e-6", "", "success")),
+                   best_if(Better::Higher, column("within_1_percent", "within 1 %", "", "success"))};
   append_spread_columns(table.columns, "cost", "J", "");
   append_spread_columns(table.columns, "evaluations", "evaluations", "");
   append_spread_columns(table.columns, "seconds", "time", "s");

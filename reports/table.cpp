@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <utility>
+
+#include "reports/cell_text.hpp"
 
 namespace odobench {
 namespace {
@@ -75,11 +79,40 @@ std::string file_extension(Format format) {
   return entry(format).extension;
 }
 
-std::string render(const std::vector<Table>& tables, Format format, const RenderOptions& options) {
-  for (const Table& table : tables) check(table);
+Column best_if(Better better, Column column) {
+  column.better = better;
+  return column;
+}
+
+void mark_best(Table& table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const double sign = table.columns[c].better == Better::Higher ? -1 : 1;
+    if (table.columns[c].better == Better::None) continue;
+    std::vector<Cell*> competing;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      const auto& none = table.references;
+      Cell& cell = table.rows[i][c];
+      const bool takes_part = cell.value && std::isfinite(*cell.value);
+      if (takes_part && std::find(none.begin(), none.end(), i) == none.end()) competing.push_back(&cell);
+    }
+    if (competing.size() < 2) continue;
+    const Cell* best = *std::min_element(
+        competing.begin(), competing.end(),
+        [sign](const Cell* a, const Cell* b) { return sign * *a->value < sign * *b->value; });
+    const std::string shown = cell_text(*best).head;
+    const auto reads_the_same = [&](const Cell* cell) { return cell_text(*cell).head == shown; };
+    if (std::all_of(competing.begin(), competing.end(), reads_the_same)) continue;
+    for (Cell* cell : competing) cell->best = reads_the_same(cell);
+  }
+}
+
+std::string render(const std::vector<Table>& given, Format format, const RenderOptions& options) {
+  for (const Table& table : given) check(table);
+  std::vector<Table> tables = given;
+  for (Table& table : tables) mark_best(table);
   switch (format) {
     case Format::Console:
-      return render_console(tables, options.width);
+      return render_console(tables, options);
     case Format::Markdown:
       return render_markdown(tables);
     case Format::Csv:

@@ -9,6 +9,9 @@ namespace odobench {
 
 enum class Align { Left, Right };
 
+// Which of two numbers of a column is the better one, if that can be said.
+enum class Better { None, Lower, Higher };
+
 // How a number is written for people; the machine formats (csv, json) always carry the full double.
 enum class Notation {
   Fixed,        // precision = digits after the decimal point
@@ -23,6 +26,7 @@ struct Cell {
   Notation notation = Notation::Fixed;
   std::optional<double> difference;  // to a reference; same notation, signed, in brackets
   std::string mark;                  // short sign after the number, explained in a note
+  bool best = false;                 // of its column, see mark_best
 
   bool empty() const { return text.empty() && !value; }
 };
@@ -40,7 +44,11 @@ struct Column {
   std::string group;  // neighbours of one group stay together when a console table is split
   Align align = Align::Right;
   std::string mark_name = "mark";  // what the marks mean: name of their csv column and json key
+  Better better = Better::None;
 };
+
+// The same column, in which the lowest or highest number is the best one.
+Column best_if(Better better, Column column);
 
 // The first column names the row; it is repeated when a wide table is split.
 struct Table {
@@ -49,7 +57,13 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;  // every row has columns.size() cells
   std::vector<std::string> notes;
+  std::vector<std::size_t> references = {};  // rows that do not compete for the best value: nominal, a bound
 };
+
+// Sets Cell::best in the columns that have a better direction: the lowest (highest) finite number of the rows that are no
+// references, and every other that reads the same. Where all read the same, or only one row competes, nothing is best. render()
+// does so itself for the formats that people read.
+void mark_best(Table& table);
 
 enum class Format { Console, Markdown, Csv, Json, Latex };
 
@@ -60,7 +74,8 @@ std::string to_string(Format format);
 std::string file_extension(Format format);
 
 struct RenderOptions {
-  int width = 100;  // console only: columns of the terminal, 0 for unlimited
+  int width = 100;    // console only: columns of the terminal, 0 for unlimited
+  bool bold = false;  // console only: the best values in bold instead of with a star; for terminals
 };
 
 // The tables one after the other; ends with a newline, "" for no tables (json: an empty list).
@@ -69,14 +84,17 @@ struct RenderOptions {
 std::string render(const std::vector<Table>& tables, Format format, const RenderOptions& options = {});
 
 // The renderers behind it.
-//   console  aligned columns; text columns wrap, then the table is split into blocks of columns
-//   md       GitHub tables, a heading each
+//   console  aligned columns; text columns wrap, then the table is split into blocks of columns; the best values have a
+//            star, which a line below the first such table explains, or are bold
+//   md       GitHub tables, a heading each; the best values are bold
 //   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line `#note,text` per
 //            note; an empty line between tables. A column with differences (marks) is followed by a column for them.
 //   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id: cell},..],"notes":[..]}]};
 //            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than a value
-//   latex    booktabs; a comment names the packages
-std::string render_console(const std::vector<Table>& tables, int width);
+//   latex    booktabs and siunitx 3 (S columns, \unit), groups of columns under a common heading, differences in brackets in a
+//            column of their own; cut into blocks that fit a line of 345 pt and into continued tables that fit a page; the best
+//            values are bold; a comment names the packages
+std::string render_console(const std::vector<Table>& tables, const RenderOptions& options);
 std::string render_markdown(const std::vector<Table>& tables);
 std::string render_csv(const std::vector<Table>& tables);
 std::string render_json(const std::vector<Table>& tables);
@@ -84,5 +102,8 @@ std::string render_latex(const std::vector<Table>& tables);
 
 // RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside doubled.
 std::string csv_field(const std::string& text);
+
+// A line of a list, "- text", with what Markdown would interpret escaped.
+std::string markdown_note(const std::string& note);
 
 }  // namespace odobench

@@ -26,6 +26,9 @@ Table solver_table(const Comparison& comparison);
 Table cost_table(const Comparison& comparison);
 std::optional<Table> repeats_table(const Comparison& comparison);
 
+// Its place among the rows, as Table::references wants it: the nominal parameters do not compete with results.
+void add_reference(Table& table, const ComparisonRow& row);
+
 // "upper a1 b2; lower a2", "" when every parameter is inside the box.
 std::string active_bounds(const RunRecord& record);
 

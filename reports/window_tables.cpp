@@ -133,17 +133,18 @@ Table methods_table(const std::vector<RunRecord>& records) {
     add(methods[place->second], r);
   }
   Table table{"methods", "Methods over all windows", {}, {}, {}};
-  table.columns = {{"method", "method", "", "", "", Align::Left},
-                   {"runs", "runs", "", "", ""},
-                   {"gap_mean", "below the optimum, mean", "", "", "gap"},
-                   {"gap_max", "max", "", "", "gap"},
-                   {"at_optimum", "at it", "%", "", "gap"},
-                   {"gap_relaxed_mean", "below the relaxation, mean", "", "", "relaxed"},
-                   {"gap_relaxed_max", "max", "", "", "relaxed"},
-                   {"iterations_mean", "iterations, mean", "", "", "effort"},
-                   {"iterations_max", "max", "", "", "effort"},
-                   {"evaluations_mean", "evaluations, mean", "", "", "effort"},
-                   {"time", "time per window", "us", "", "effort"}};
+  table.columns = {
+      {"method", "method", "", "", "", Align::Left},
+      {"runs", "runs", "", "", ""},
+      best_if(Better::Lower, {"gap_mean", "below the optimum, mean", "", "", "gap"}),
+      best_if(Better::Lower, {"gap_max", "max", "", "", "gap"}),
+      best_if(Better::Higher, {"at_optimum", "at it", "%", "", "gap"}),
+      best_if(Better::Lower, {"gap_relaxed_mean", "below the relaxation, mean", "", "", "relaxed"}),
+      best_if(Better::Lower, {"gap_relaxed_max", "max", "", "", "relaxed"}),
+      {"iterations_mean", "iterations, mean", "", "", "effort"},
+      {"iterations_max", "max", "", "", "effort"},
+      best_if(Better::Lower, {"evaluations_mean", "evaluations, mean", "", "", "effort"}),
+      best_if(Better::Lower, {"time", "time per window", "us", "", "effort"})};
   table.notes = {
       fmt::format("Below the optimum: H of the best t in {{-1, 0, 1}} minus H at t rounded to it; at it: not "
                   "more than {:g} |H|.",

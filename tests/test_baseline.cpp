@@ -316,5 +316,53 @@ TEST(BaselineFileErrors, BrokenFiles) {
               ThrowsMessage<std::runtime_error>(HasSubstr("/no/such.json: cannot be read")));
 }
 
+// Ten runs of a random solver; evaluations are 10, 20, ..
+std::vector<RunRecord> noisy(double first, int count = 10) {
+  std::vector<RunRecord> list;
+  for (int i = 0; i < count; ++i) list.push_back(run_record("pso", first + 0.01 * i, i + 1));
+  return list;
+}
+
+TEST(BaselineSamples, AMedianMustMoveForSure) {
+  const Baseline baseline = make_baseline(noisy(1), tolerances());
+  ASSERT_EQ(baseline.entries.at(0).samples.at("cost").size(), 10u);
+  EXPECT_TRUE(check_baseline(baseline, noisy(1)).passed);
+  const BaselineReport chance = check_baseline(baseline, noisy(1.02));
+  EXPECT_TRUE(chance.passed) << "beyond 1e-6, but not significant";
+  EXPECT_THAT(chance.table.notes, ::testing::Contains(HasSubstr("without being significant: 1.")));
+  const BaselineReport moved = check_baseline(baseline, noisy(1.5));
+  EXPECT_FALSE(moved.passed);
+  ASSERT_EQ(moved.table.rows.size(), 1u);
+  EXPECT_THAT(moved.table.rows[0][3].text, HasSubstr("J, median (p = "));
+  EXPECT_EQ(*moved.table.rows[0][6].value, 0.5);
+  Baseline wide = baseline;
+  wide.entries[0].tolerances.cost_relative = 0.6;
+  EXPECT_TRUE(check_baseline(wide, noisy(1.5)).passed) << "significant, but within the tolerance";
+}
+
+TEST(BaselineSamples, FailedRunsAndEffortCountToo) {
+  const Baseline baseline = make_baseline(noisy(1), tolerances());
+  auto found = noisy(1);
+  for (RunRecord& r : found) r.cost.reset();
+  EXPECT_FALSE(check_baseline(baseline, found).passed);
+  found = noisy(1);
+  for (RunRecord& r : found) r.evaluations += 200;
+  EXPECT_FALSE(check_baseline(baseline, found).passed);
+  for (RunRecord& r : found) r.evaluations = 1;
+  EXPECT_TRUE(check_baseline(baseline, found).passed) << "fewer evaluations";
+}
+
+TEST(BaselineSamples, RoundTripAndSingleRuns) {
+  auto records = noisy(1);
+  records[3].cost.reset();
+  const std::string text = to_json_text(make_baseline(records, tolerances()));
+  const BaselineFile file(text);
+  EXPECT_EQ(to_json_text(read_baseline(file.path())), text);
+  EXPECT_THAT(text, HasSubstr("\"cost\": [1.0,1.01,1.02,null,1.04"));
+  // One run on the other side: value by value.
+  EXPECT_FALSE(check_baseline(read_baseline(file.path()), {run_record("pso", 1.5)}).passed);
+  EXPECT_TRUE(make_baseline({run_record("lm", 1)}).entries[0].samples.empty());
+}
+
 }  // namespace
 }  // namespace odobench

@@ -86,7 +86,7 @@ TEST(ComparisonTables, ErrorsWithDifferenceToNominal) {
   EXPECT_NEAR(*cell(t, "lm", "sigma_theta").value, 3 * std::sqrt(0.02), 1e-15);
   EXPECT_FALSE(cell(t, "nominal", "e_max_x").difference.has_value());
   EXPECT_THAT(render({t}, Format::Markdown),
-              HasSubstr("| lm | 0.300000 (-0.900000) | 0.200000 (-0.600000) |"));
+              HasSubstr("| lm | **0.300000** (-0.900000) | **0.200000** (-0.600000) |"));
   EXPECT_EQ(t.columns.size(), 10u);
   EXPECT_EQ(t.columns[1].unit, "m");
   EXPECT_EQ(t.columns[7].unit, "rad");

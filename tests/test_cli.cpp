@@ -40,8 +40,8 @@ std::vector<std::string> labels_of(const std::vector<RunRecord>& records) {
 }
 
 TEST(Cli, HelpAndVersionGoToStandardOutput) {
-  for (const std::string verb :
-       {"run", "evaluate", "list", "import", "demo", "check", "report", "simulate", "plan", "verify"}) {
+  for (const std::string verb : {"run", "evaluate", "list", "import", "demo", "check", "report", "compare",
+                                 "simulate", "plan", "verify"}) {
     const ProcessResult help = run_bench({verb, "--help"});
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.out, HasSubstr("--help")) << verb;

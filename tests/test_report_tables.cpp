@@ -42,6 +42,31 @@ Table difficult_table() {
   return table;
 }
 
+Table wide_table() {
+  Table table;
+  table.id = table.title = "wide";
+  table.columns = {Column{"key", "key", "", "", "", Align::Left}};
+  std::vector<Cell> row{text_cell("row")};
+  for (const char* group : {"x", "y", "z"})
+    for (const char* name : {"1", "2", "3"}) {
+      table.columns.push_back({std::string(group) + name, std::string(group) + name, "m", "", group});
+      row.push_back(fixed_cell(123.456789, 6));
+    }
+  table.columns.push_back({"text", "text", "", "", "", Align::Left});
+  row.push_back(text_cell("a sentence of some length that may be wrapped where there is no room for it"));
+  table.rows = {row};
+  return table;
+}
+
+// Rows a, b, c, d; the first is a reference.
+Table ranking(Better better, const std::vector<double>& values) {
+  Table table{"r", "r", {{"key", "key", "", "", "", Align::Left}, best_if(better, {"v", "v", "", "", ""})},
+              {},  {},  {0}};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    table.rows.push_back({text_cell(std::string(1, static_cast<char>('a' + i))), fixed_cell(values[i], 2)});
+  return table;
+}
+
 TEST(NumberText, FixedAndSignificant) {
   EXPECT_EQ(number_text(0.0632331, Notation::Fixed, 6), "0.063233");
   EXPECT_EQ(number_text(-0.0123449, Notation::Fixed, 6, true), "-0.012345");
@@ -152,24 +177,30 @@ TEST(Render, Markdown) {
 
 TEST(Render, Latex) {
   EXPECT_EQ(render({difficult_table()}, Format::Latex),
-            R"(% packages: booktabs, graphicx; \usepackage[T1]{fontenc} for quotation marks
+            R"(% \usepackage[T1]{fontenc}
+% \usepackage{array, booktabs, graphicx}
+% \usepackage{siunitx}  % version 3
 \begin{table}[htbp]
 \centering
 \caption{A, \textquotedbl{}B\textquotedbl{} \& 50 \% of a\_b}
 \label{tab:difficult}
+\par\smallskip
+\small\setlength{\tabcolsep}{4pt}
+\sisetup{mode=text, reset-text-series=false, group-digits=none, table-align-exponent=false}
 \resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%
-\begin{tabular}{lrl}
+\begin{tabular}{lS[table-format=-1.6e-1]@{\,}r@{\,}ll}
 \toprule
-set & $e_{\theta,\max}$ [m] & note \\
+set & \multicolumn{3}{c}{$e_{\theta,\max}$} & note \\
+ & \multicolumn{3}{c}{[\unit{\metre}]} &  \\
 \midrule
-lm, \textquotedbl{}x\textquotedbl{} & 0.063233 ($-0.012345$) U & a\textbar{}b \textless{}c\textgreater{} \#1 \$2\$ \textasciicircum{}\textasciitilde{}\{\}\textbackslash{} \\
-Žofie 線 & 0.000000 (0.000000) & -- \\
-{}[p] & $-2.11\times10^{-9}$ & two lines \\
-none & -- & \_x\_ \\
+lm, \textquotedbl{}x\textquotedbl{} & 0.063233 & $(-0.012345)$ & U & a\textbar{}b \textless{}c\textgreater{} \#1 \$2\$ \textasciicircum{}\textasciitilde{}\{\}\textbackslash{} \\
+Žofie 線 & 0.000000 & $(0.000000)$ & & -- \\
+{}[p] & -2.11e-9 & & & two lines \\
+none & {--} & & & \_x\_ \\
 \bottomrule
 \end{tabular}}
 \par\smallskip
-\begin{minipage}{\linewidth}\footnotesize
+\begin{minipage}{\linewidth}\footnotesize\raggedright
 100 \% of it, \textquotedbl{}quoted\textquotedbl{}\par
 \end{minipage}
 \end{table}
@@ -179,10 +210,35 @@ none & -- & \_x\_ \\
 TEST(Render, LatexNonFinite) {
   Table table = difficult_table();
   table.rows = {{text_cell("θ ≤ σ"), fixed_cell(kInf, 3), Cell{}},
-                {text_cell("b"), fixed_cell(-kInf, 3), Cell{}}};
+                {text_cell("b"), fixed_cell(-kInf, 3), Cell{}},
+                {text_cell("c"), fixed_cell(12, 3), Cell{}}};
   const std::string text = render({table}, Format::Latex);
-  EXPECT_THAT(text, HasSubstr("$\\theta$ $\\leq$ $\\sigma$ & $\\infty$ &"));
-  EXPECT_THAT(text, HasSubstr("b & $-\\infty$ &"));
+  EXPECT_THAT(text, HasSubstr("$\\theta$ $\\leq$ $\\sigma$ & {$\\infty$} &"));
+  EXPECT_THAT(text, HasSubstr("b & {$-\\infty$} &"));
+  EXPECT_THAT(text, HasSubstr("S[table-format=2.3]"));
+}
+
+TEST(Render, LatexGroupsAndBlocks) {
+  Table table = wide_table();
+  for (std::size_t c = 1; c < 10; ++c) table.columns[c].name = "v";  // else the names say the group
+  const std::string text = render({table}, Format::Latex);
+  EXPECT_THAT(text,
+              HasSubstr("\\multicolumn{1}{c}{} & \\multicolumn{3}{c}{$x$} & \\multicolumn{3}{c}{$y$} \\\\\n"
+                        "\\cmidrule(lr){2-4}\\cmidrule(lr){5-7}\n"));
+  EXPECT_THAT(text, HasSubstr("\\multicolumn{3}{c}{z}"));
+  EXPECT_THAT(text, HasSubstr("\\par\\medskip")) << "too wide for a line: two blocks";
+  EXPECT_EQ(text.find("\\caption"), text.rfind("\\caption"));
+  std::size_t numbers = 0;
+  for (std::size_t at = text.find("123.456789"); at != std::string::npos;
+       at = text.find("123.456789", at + 1))
+    ++numbers;
+  EXPECT_EQ(numbers, 9u) << "no cell lost";
+  for (int i = 0; i < 100; ++i) table.rows.push_back(table.rows.front());
+  const std::string pages = render({table}, Format::Latex);
+  EXPECT_THAT(pages, HasSubstr("\\caption[]{wide, continued}"));
+  EXPECT_EQ(pages.find("\\label"), pages.rfind("\\label"));
+  EXPECT_THAT(render({ranking(Better::Lower, {0, 3, 1, 2})}, Format::Latex),
+              HasSubstr("c & \\bfseries 1.00 \\\\"));
 }
 
 // An independent reader: RFC 4180, section 2.
@@ -264,22 +320,6 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-Table wide_table() {
-  Table table;
-  table.id = table.title = "wide";
-  table.columns = {Column{"key", "key", "", "", "", Align::Left}};
-  std::vector<Cell> row{text_cell("row")};
-  for (const char* group : {"x", "y", "z"})
-    for (const char* name : {"1", "2", "3"}) {
-      table.columns.push_back({std::string(group) + name, std::string(group) + name, "m", "", group});
-      row.push_back(fixed_cell(123.456789, 6));
-    }
-  table.columns.push_back({"text", "text", "", "", "", Align::Left});
-  row.push_back(text_cell("a sentence of some length that may be wrapped where there is no room for it"));
-  table.rows = {row};
-  return table;
-}
-
 TEST(Console, NeverWiderThanTheTerminal) {
   for (int width = 40; width < 240; ++width) {
     const std::string text = render({wide_table()}, Format::Console, {width});
@@ -306,6 +346,50 @@ TEST(Console, WrapsTextFirstThenSplitsBetweenGroups) {
   EXPECT_THAT(split, HasSubstr("key          z1          z2          z3\n"));
   // Too narrow for a group: cut inside, still one key per block.
   EXPECT_THAT(render({wide_table()}, Format::Console, {30}), HasSubstr("key          x1          x2\n"));
+}
+
+std::string best_rows(Table table) {
+  mark_best(table);
+  std::string out;
+  for (const auto& row : table.rows)
+    if (row[1].best) out += row[0].text;
+  return out;
+}
+
+TEST(Best, LowestOrHighestOfTheRowsThatCompete) {
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 3, 1, 2})), "c");
+  EXPECT_EQ(best_rows(ranking(Better::Higher, {9, 3, 1, 2})), "b");
+  EXPECT_EQ(best_rows(ranking(Better::None, {0, 3, 1, 2})), "");
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 1.001, 1.004, 2})), "bc") << "they read the same";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2, 2, 2})), "") << "no best among equals";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2})), "") << "only one competes";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, std::nan(""), 2, -kInf, 3})), "c") << "finite ones only";
+}
+
+TEST(Best, EveryFormatForPeopleShowsIt) {
+  Table table = ranking(Better::Lower, {0, 3, 1, 2});
+  table.rows[1][1].difference = 2;
+  EXPECT_EQ(render({table}, Format::Console), R"(r
+─────────────────
+key             v
+─────────────────
+a    0.00
+b    3.00 (+2.00)
+c    1.00 *
+d    2.00
+─────────────────
+*: best of its column.
+)");
+  EXPECT_THAT(render({table}, Format::Console, {80, true}),
+              HasSubstr("c    \x1b[1m1.00\x1b[0m\nd    2.00\n─────────────────\n"));
+  EXPECT_THAT(render({table, table}, Format::Console, {80, true}), Not(HasSubstr("best of")));
+  const std::string twice = render({table, table}, Format::Console);
+  EXPECT_EQ(twice.find("best of"), twice.rfind("best of")) << "explained once";
+  EXPECT_THAT(render({table}, Format::Markdown), HasSubstr("| b | 3.00 (+2.00) |\n| c | **1.00** |\n"));
+  const Table plain = ranking(Better::None, {0, 3, 1, 2});
+  table.rows[1][1].difference.reset();
+  EXPECT_EQ(render({table}, Format::Csv), render({plain}, Format::Csv));
+  EXPECT_EQ(render({table}, Format::Json), render({plain}, Format::Json));
 }
 
 }  // namespace

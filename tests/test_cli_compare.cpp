@@ -1,0 +1,142 @@
+// `bench compare` as its users meet it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "reports/record.hpp"
+#include "tests/support/report_records.hpp"
+#include "tests/support/run_process.hpp"
+
+namespace odobench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using testing::ProcessResult;
+using testing::run_bench;
+using testing::run_record;
+using testing::TemporaryFolder;
+
+constexpr int kUsage = 2, kData = 3;
+
+std::string text_of(const std::vector<RunRecord>& records) {
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  return text;
+}
+
+std::vector<RunRecord> repeats(const std::string& label, double first, int count = 10) {
+  std::vector<RunRecord> records;
+  for (int i = 0; i < count; ++i) records.push_back(run_record(label, first + 0.01 * i, i + 1));
+  return records;
+}
+
+class CliCompare : public ::testing::Test {
+ protected:
+  std::string file(const std::string& name, const std::vector<RunRecord>& records) const {
+    return folder_.file(name, text_of(records));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliCompare, NoChange) {
+  const std::string runs = file("a.jsonl", repeats("pso", 1));
+  const ProcessResult same = run_bench({"compare", runs, runs, "--fail-on=J:+0%,seconds:+0%,evaluations:+0"});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.err, IsEmpty());
+  EXPECT_THAT(same.out, HasSubstr("Passed: none of 3 gated results"));
+  EXPECT_THAT(same.out, Not(HasSubstr("What changed")));
+}
+
+TEST_F(CliCompare, RegressionFailsOnlyBeyondAStatedLimit) {
+  const std::string before = file("a.jsonl", repeats("pso", 1)), after = file("b.jsonl", repeats("pso", 1.5));
+  EXPECT_EQ(run_bench({"compare", before, after}).exit_code, 0);
+  EXPECT_EQ(run_bench({"compare", before, after, "--fail-on=J:+90%"}).exit_code, 0);
+  const ProcessResult failed = run_bench({"compare", before, after, "--fail-on=evaluations:+50%,J:+0.1%"});
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_THAT(failed.err, IsEmpty());
+  EXPECT_THAT(failed.out, HasSubstr("Failed: 1 of 2 gated results"));
+  EXPECT_EQ(run_bench({"compare", before, after, "--fail-on=J:+0.1%", "--alpha=1e-9"}).exit_code, 0);
+}
+
+TEST_F(CliCompare, WhatIsNotSignificantPasses) {
+  const std::string before = file("a.jsonl", repeats("pso", 1)),
+                    after = file("b.jsonl", repeats("pso", 1.02));
+  const ProcessResult run = run_bench({"compare", before, after, "--fail-on=J:+0.1%"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("not significant"));
+  EXPECT_THAT(run.out, HasSubstr("passed its limit without being sure"));
+}
+
+TEST_F(CliCompare, ADeterministicSolverNeedsNoRepeats) {
+  const std::string before =
+      file("a.jsonl", {run_record("lm", 1), run_record("pso", 1), run_record("mine", 1)});
+  const std::string after =
+      file("b.jsonl", {run_record("lm", 2), run_record("pso", 2), run_record("mine", 2)});
+  const ProcessResult run = run_bench({"compare", before, after, "--fail-on=J:+1%", "--format=json"});
+  EXPECT_EQ(run.exit_code, 1);
+  const auto tables = nlohmann::json::parse(run.out).at("tables");
+  EXPECT_EQ(tables.at(0).at("rows").at(0).at("failed"), 1) << "pso is random, mine is unknown";
+  EXPECT_EQ(tables.at(1).at("rows").at(0).at("label"), "lm");
+  EXPECT_EQ(tables.at(1).at("rows").at(0).at("change_percent"), 100);
+}
+
+TEST_F(CliCompare, MarkdownForAComment) {
+  const std::string before = file("a.jsonl", repeats("pso", 1)), after = file("b.jsonl", repeats("pso", 1.5));
+  const ProcessResult run = run_bench({"compare", before, after, "--fail-on=J:+0.1%", "--format=md"});
+  EXPECT_EQ(run.exit_code, 1);
+  const std::vector<std::string> lines = testing::lines(run.out);
+  EXPECT_THAT(lines.at(0), HasSubstr("**Failed: 1 of 1"));
+  EXPECT_EQ(lines.at(2), "### What changed");
+  EXPECT_THAT(run.out, HasSubstr("<details>\n<summary>All 4 results</summary>\n\n### All results"));
+  EXPECT_THAT(run.out, HasSubstr("\n</details>\n"));
+}
+
+TEST_F(CliCompare, ListsALabelThatOneSideLacks) {
+  std::vector<RunRecord> more = repeats("pso", 1);
+  more.push_back(run_record("ga", 1));
+  const std::string before = file("a.jsonl", more), after = file("b.jsonl", repeats("pso", 1));
+  const ProcessResult run = run_bench({"compare", before, after, "--fail-on=J:+1%", "--format=csv"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out,
+              HasSubstr("#table,one_sided,On one side only\r\nlabel,problem,dataset,metric,side,remark"
+                        "\r\nga,sphere,,all,old,\r\n"));
+}
+
+TEST_F(CliCompare, RefusesBadLimits) {
+  const std::string runs = file("a.jsonl", repeats("pso", 1));
+  const auto refusal = [&](const std::string& option) {
+    const ProcessResult run = run_bench({"compare", runs, runs, option});
+    EXPECT_EQ(run.exit_code, kUsage) << option;
+    EXPECT_THAT(run.out, IsEmpty()) << option;
+    EXPECT_EQ(testing::lines(run.err).size(), 1u) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(refusal("--fail-on=evaluatons:+1%"), HasSubstr("did you mean 'evaluations'?"));
+  EXPECT_THAT(refusal("--fail-on=J"), HasSubstr("'J': no ':', expected METRIC:LIMIT"));
+  EXPECT_THAT(refusal("--fail-on=J:1%"), HasSubstr("a limit without a sign"));
+  EXPECT_THAT(refusal("--fail-on=J:+x%"), HasSubstr("'x' is not a number"));
+  EXPECT_THAT(refusal("--fail-on=:+1"), HasSubstr("no metric before"));
+  EXPECT_THAT(refusal("--fail-on=J:-1%"), HasSubstr("J is better when lower"));
+  EXPECT_THAT(refusal("--fail-on=J:+1%,J:+2"), HasSubstr("a second limit for J"));
+  EXPECT_THAT(refusal("--fail-on=J:+-1"), HasSubstr("two signs"));
+  EXPECT_THAT(refusal("--metrics=secnds"), HasSubstr("did you mean 'seconds'?"));
+  EXPECT_THAT(refusal("--alpha=1"), HasSubstr("below 1"));
+  EXPECT_THAT(refusal("--format=xml"), HasSubstr("unknown table format"));
+}
+
+TEST_F(CliCompare, RefusesMissingAndBrokenFiles) {
+  const std::string runs = file("a.jsonl", repeats("pso", 1)), broken = folder_.file("b.jsonl", "{\n");
+  const ProcessResult missing = run_bench({"compare", runs, (folder_ / "no.jsonl").string()});
+  EXPECT_EQ(missing.exit_code, kData);
+  EXPECT_THAT(missing.err, HasSubstr("no.jsonl: there is no such file"));
+  const ProcessResult bad = run_bench({"compare", broken, runs});
+  EXPECT_EQ(bad.exit_code, kData);
+  EXPECT_THAT(bad.err, HasSubstr("b.jsonl:1"));
+  EXPECT_EQ(run_bench({"compare", runs}).exit_code, kUsage);
+}
+
+}  // namespace
+}  // namespace odobench
