@@ -87,7 +87,10 @@ std::string body_cell(const Cell& cell, const ColumnLayout& column, bool first) 
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", exact_text(*cell.value));
   if (cell.difference) attributes += fmt::format(" data-difference=\"{}\"", exact_text(*cell.difference));
   const char* tag = first ? "th" : "td";
-  return fmt::format("<{}{}>{}</{}>", tag, attributes, cell_content(cell, column), tag);
+  const std::string content = cell_content(cell, column);
+  return fmt::format(
+      "<{}{}>{}</{}>", tag, attributes,
+      cell.best ? "<b class=\"best\" title=\"best of the column\">" + content + "</b>" : content, tag);
 }
 
 std::string column_groups(const std::vector<ColumnLayout>& layout) {
@@ -110,7 +113,9 @@ std::string notes(const Table& table) {
 
 }  // namespace
 
-std::string render_html_table(const Table& table, const std::string& anchor, int number) {
+std::string render_html_table(const Table& unmarked, const std::string& anchor, int number) {
+  Table table = unmarked;
+  mark_best(table);
   for (std::size_t r = 0; r < table.rows.size(); ++r)
     if (table.rows[r].size() != table.columns.size())
       throw std::invalid_argument(fmt::format("table '{}', row {}: {} cells, expected {}", table.id, r + 1,
