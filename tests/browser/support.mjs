@@ -36,7 +36,6 @@ export const figure = (page, id) => page.locator(`figure[data-figure="${id}"]`);
 
 export async function drawn(page, id) {
   const place = figure(page, id);
-  await place.scrollIntoViewIfNeeded();
   await place.evaluate((element) => element.scrollIntoView({block: 'center', behavior: 'instant'}));
   await page.waitForFunction((name) => document.querySelector(`figure[data-figure="${name}"]`).dataset.state, id, {timeout: 20000});
   assert.equal(await place.getAttribute('data-state'), 'drawn', `figure ${id}`);
