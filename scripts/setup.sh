@@ -18,7 +18,11 @@ say() { printf 'setup: %s\n' "$*"; }
 fail() { say "error: $*"; exit 1; }
 
 listed_packages() {
-  { sed 's/#.*//' "$root/scripts/packages.txt" && echo "${ODOBENCH_EXTRA_PACKAGES:-}"; } | xargs -n 1
+  local name command
+  { sed 's/#.*//' "$root/scripts/packages.txt" && echo "${ODOBENCH_EXTRA_PACKAGES:-}"; } | xargs -n 1 |
+    while IFS='[]' read -r name command; do
+      if [[ -z $command ]] || ! command -v "$command" >/dev/null; then echo "$name"; fi
+    done
 }
 
 missing_packages() {

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Opens a report in Debian's chromium and looks at what a reader would: charts, controls, keyboard, contrast, print.
 #
-# usage: tests/browser/run.sh BUILD_FOLDER SAMPLE_REPORT
+# usage: tests/browser/run.sh BUILD_FOLDER SAMPLE_REPORT BENCH
+#
+# First at a page of all kinds of charts (SAMPLE_REPORT), then at one that BENCH makes of runs, a filter, windows and a fusion.
 #
 # REPORT=FILE   looks at that page instead of the one that SAMPLE_REPORT writes
 # Screenshots, PDF and timings are in BUILD_FOLDER/browser/output. Exit code 77: left out, the line says why.
@@ -18,17 +20,6 @@ done
 (($(node -p 'process.versions.node.split(".")[0]') >= 18)) || skip "node is older than 18: $(node --version)"
 
 mkdir -p "$work/output"
-if [[ -z ${REPORT:-} ]]; then
-  REPORT=$work/report.html FIGURES=$work/figures.json TABLES=$work/tables.json
-  status=0
-  "$2" "$REPORT" "$FIGURES" "$TABLES" || status=$?
-  ((status == 77)) && skip 'this build has no chart library (npm was not there, or could not fetch it)'
-  ((status == 0)) || exit "$status"
-  export FIGURES TABLES
-fi
-REPORT=$(realpath "$REPORT")
-export REPORT OUTPUT=$work/output CHARTS=$build/charts WEB=$here/../../reports/web
-
 if [[ ! -f $work/.installed ]] || ! cmp --silent "$here/package-lock.json" "$work/.installed"; then
   rm -rf "$work/node_modules"
   cp "$here/package.json" "$here/package-lock.json" "$work/"
@@ -37,7 +28,40 @@ if [[ ! -f $work/.installed ]] || ! cmp --silent "$here/package-lock.json" "$wor
   cp "$here/package-lock.json" "$work/.installed"
 fi
 cp "$here"/*.mjs "$work/"  # where the packages are
-cd "$work"
+export CHARTS=$build/charts WEB=$here/../../reports/web
+
+look() {  # look PAGE FOLDER
+  local status=0 file
+  mkdir -p "$work/output/$2"
+  for file in schema svg page; do
+    (cd "$work" && REPORT=$(realpath "$1") OUTPUT=$work/output/$2 node "$file.test.mjs") || status=1
+  done
+  return "$status"
+}
+
+if [[ -n ${REPORT:-} ]]; then
+  look "$REPORT" given
+  exit
+fi
+
+export FIGURES=$work/figures.json TABLES=$work/tables.json
 status=0
-for file in schema svg page; do node "$file.test.mjs" || status=1; done
+"$2" "$work/sample.html" "$FIGURES" "$TABLES" || status=$?
+((status == 77)) && skip 'this build has no chart library (npm was not there, or could not fetch it)'
+((status == 0)) || exit "$status"
+look "$work/sample.html" sample || status=1
+
+root=$(cd "$here/../.." && pwd)
+runs=$work/runs
+rm -rf "$runs"
+mkdir -p "$runs"
+"$3" --quiet --solver=lm,pso --repeat=3 --max-evals=1500 --out="$runs/run" >/dev/null
+"$3" fuse --parameters=nominal,truth --filter=none,ekf --sensors="$root/datasets/sensors/heading_only.json" --out="$runs/fusion" >/dev/null
+"$3" simulate --scenario=filter_turns --quiet --out="$runs/drive"
+"$3" filter --quiet --data="$runs/drive/sensors.csv" --truth="$runs/drive/truth.csv" --wheel-order=left-first --gap \
+  --records="$runs/filter" >/dev/null
+"$3" report "$runs/run" "$runs/filter" "$runs/fusion" --out="$work/report.html"
+"$3" report "$runs/run" "$runs/filter" "$runs/fusion" --json >"$TABLES"
+unset FIGURES
+look "$work/report.html" report || status=1
 exit "$status"
