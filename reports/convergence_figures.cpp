@@ -99,13 +99,14 @@ json convergence_spec(const std::string& data, const std::string& caption, const
   const json color = vega::line_color("label", labels);
   const auto area = [&](const char* low, const char* high, double opacity) {
     json y = vega::logarithmic(low, kCostTitle);
-    return json{{"mark", {{"type", "area"}, {"interpolate", "step-after"}, {"opacity", opacity}}},
-                {"encoding", {{"x", x}, {"y", y}, {"y2", {{"field", high}}}, {"color", color}}}};
+    return json{
+        {"mark", {{"type", "area"}, {"interpolate", "step-after"}, {"opacity", 1}, {"fillOpacity", opacity}}},
+        {"encoding", {{"x", x}, {"y", y}, {"y2", {{"field", high}}}, {"color", color}}}};
   };
   json layer = json::array();
   if (bands) {
-    layer.push_back(area("min", "max", 0.12));
-    layer.push_back(area("q1", "q3", 0.25));
+    layer.push_back(area("min", "max", 0.14));
+    layer.push_back(area("q1", "q3", 0.28));
   }
   json y = vega::logarithmic("median", kCostTitle);
   layer.push_back({{"mark", {{"type", "line"}, {"interpolate", "step-after"}}},

@@ -41,10 +41,8 @@ inline constexpr std::array<const char*, 3> kNoiseMeasures{"rms", "ratio", "max"
 inline constexpr std::array<const char*, 3> kNoiseStages{"before", "after", "zero"};
 
 // Signals of the figures: mean displacement of the wheels per sample, accelerations, rotation per sample.
-inline constexpr std::array<NoiseChannel, 4> kSignals{{{"encoder", "wheels", "m"},
-                                                       {"ax", "ax", "m/s^2"},
-                                                       {"ay", "ay", "m/s^2"},
-                                                       {"theta", "rotation", "deg"}}};
+inline constexpr std::array<NoiseChannel, 4> kSignals{
+    {{"encoder", "wheels", "m"}, {"ax", "ax", "m/s^2"}, {"ay", "ay", "m/s^2"}, {"theta", "rotation", "deg"}}};
 inline constexpr std::array<const char*, 3> kSignalStages{"before", "after", "truth"};
 
 // A window counts as solved to the optimum when H_exact - H <= this * |H_exact|: what is above it is another t, not rounding.
