@@ -65,7 +65,9 @@ TEST(Cli, CalibratesTheDemoSetAndKeepsRecordsAndTables) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, IsEmpty());  // no terminal: no progress
   EXPECT_THAT(names_in(out), ElementsAre("runs.jsonl", "tables.csv", "tables.json", "tables.md", "tables.tex",
-                                         "tables.txt"));
+                                         "tables.txt", "tracks"));
+  EXPECT_THAT(names_in(out + "/tracks"),
+              ElementsAre("1.npy", "2.npy", "reference.npy", "time.npy", "tracks.json"));
 
   const std::vector<RunRecord> records = read_records(out + "/runs.jsonl");
   ASSERT_THAT(labels_of(records), ElementsAre("nominal", "lm"));

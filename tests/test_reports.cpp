@@ -41,6 +41,7 @@ RunRecord full_record() {
   r.non_finite = 13;
   r.iterations = 14;
   r.trace = {{1, 0.001, 1135.3322706653605}, {50, 0.1, 1.0 / 3}};
+  r.budget = {{"evaluations", 50000}};
   r.group = "steered";
   r.statistics = {{"gap_exact_mean", 1.0 / 3}, {"windows", 189}};
   r.series = {{"nees", {1.0 / 3, 2}}};
@@ -103,7 +104,11 @@ TEST(Record, EveryFieldSurvivesTheRoundTrip) {
   EXPECT_EQ(back.notes, r.notes);
   EXPECT_EQ(back.group, r.group);
   EXPECT_EQ(back.statistics, r.statistics);
-  EXPECT_EQ(to_json(r).size(), 31u) << "a new field needs a place in both directions and in this test";
+  EXPECT_EQ(back.series, r.series);
+  EXPECT_EQ(back.budget, r.budget);
+  EXPECT_EQ(back.context.command, r.context.command);
+  EXPECT_EQ(back.context.libraries, r.context.libraries);
+  EXPECT_EQ(to_json(r).size(), 33u) << "a new field needs a place in both directions and in this test";
 }
 
 TEST(Record, DoublesKeepEveryBit) {
@@ -162,11 +167,14 @@ TEST(Record, EveryMissingFieldIsNamed) {
   for (const auto& field : complete.items()) {
     auto broken = complete;
     broken.erase(field.key());
-    if (field.key() == "notes" || field.key() == "group" || field.key() == "statistics") {
+    if (field.key() == "notes" || field.key() == "group" || field.key() == "statistics" ||
+        field.key() == "series" || field.key() == "budget") {
       const RunRecord without = record_from_json(broken);
       EXPECT_EQ(without.notes.empty(), field.key() == "notes");
       EXPECT_EQ(without.group.empty(), field.key() == "group");
       EXPECT_EQ(without.statistics.empty(), field.key() == "statistics");
+      EXPECT_EQ(without.series.empty(), field.key() == "series");
+      EXPECT_EQ(without.budget.empty(), field.key() == "budget");
       continue;
     }
     EXPECT_THAT([&] { record_from_json(broken); },
