@@ -91,6 +91,8 @@
     return boxes.some((box, k) => k > 0 && box.x1 < boxes[k - 1].x2 + 2 && Math.abs(box.y1 - boxes[k - 1].y1) < 2);
   }
 
+  const axisRoom = 60;  // px: in a column of views legends begin where the axes end
+
   // How many entries of a legend that is wider than `width` fit side by side; 0 for one that fits.
   function legendColumns(legend, width) {
     let widest = 0;
@@ -101,7 +103,7 @@
         if (mark.role === 'legend-title') title = Math.max(title, item.bounds.width());
       }
     });
-    if (widest === 0 || legend.bounds.width() <= width) return 0;
+    if (widest === 0 || legend.bounds.width() <= width - axisRoom) return 0;
     return Math.max(1, Math.floor((width - title - 10) / (widest + 40)));
   }
 

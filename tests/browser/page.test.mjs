@@ -86,6 +86,7 @@ test('the theme is chosen, followed and remembered', async () => {
       await page.getByRole('radio', {name, exact: true}).check({force: true});
       assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), name === 'Dark' ? 'dark' : 'light');
       seen[name] = await background();
+      await figure(page, first).evaluate((element) => element.scrollIntoView({block: 'center', behavior: 'instant'}));
       if (name === 'Dark' || name === 'Auto')
         await page.waitForFunction(([id, old]) => {
           const svg = document.querySelector(`figure[data-figure="${id}"] .chart svg`);
