@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: sample_report PAGE.html [FIGURES.json TABLES.json]\n";
     return 2;
   }
-  const Document document = testing::sample_document();
+  const Document document = odobench::testing::sample_document();
   if (!write(argv[1], render_html(document))) return 1;
   if (argc == 4) {
     nlohmann::json list = nlohmann::json::array();
