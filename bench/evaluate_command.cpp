@@ -73,13 +73,13 @@ ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& p
   return {label, values};
 }
 
-std::vector<ParameterSet> from_file(const LoadedProblem& loaded, const std::string& file) {
+std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters, const std::string& file) {
   const Json root = parse_json(file);
   const std::string stem = std::filesystem::path(file).stem().string();
-  if (!root.is_array()) return {from_object(root, loaded.problem.parameters(), file, stem)};
+  if (!root.is_array()) return {from_object(root, parameters, file, stem)};
   std::vector<ParameterSet> sets;
   for (std::size_t i = 0; i < root.size(); ++i)
-    sets.push_back(from_object(root[i], loaded.problem.parameters(), fmt::format("{}: entry {}", file, i + 1),
+    sets.push_back(from_object(root[i], parameters, fmt::format("{}: entry {}", file, i + 1),
                                fmt::format("{} {}", stem, i + 1)));
   if (sets.empty())
     throw DataError(fmt::format("{}: an empty array, expected at least one object of parameters", file));
@@ -118,37 +118,48 @@ std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
   return sources.empty() ? std::vector<std::string>{"nominal"} : sources;
 }
 
-std::vector<ParameterSet> read_parameters(const LoadedProblem& loaded, const std::string& source) {
-  if (source == "nominal") return {{"nominal", loaded.problem.start()}};
-  std::vector<std::string> names = {"nominal"};
-  if (loaded.dataset) {
-    for (const NamedParameters& known : loaded.dataset->known_parameters) {
-      if (known.name == source)
-        return {{source, Eigen::Map<const Vector>(known.values.data(),
-                                                  static_cast<Eigen::Index>(known.values.size()))}};
-      names.push_back(known.name);
-    }
+ParameterNames parameter_names(const LoadedProblem& loaded) {
+  ParameterNames names{loaded.problem.parameters(), {}};
+  if (loaded.dataset) names.known = loaded.dataset->known_parameters;
+  return names;
+}
+
+std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source) {
+  const auto count = static_cast<Eigen::Index>(names.parameters.size());
+  std::vector<std::string> known = {"nominal"};
+  if (source == "nominal") {
+    Vector values(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      values[i] = names.parameters[static_cast<std::size_t>(i)].nominal;
+    return {{source, values}};
   }
-  if (std::filesystem::exists(source)) return from_file(loaded, source);
+  for (const NamedParameters& set : names.known) {
+    if (set.name == source) return {{source, Eigen::Map<const Vector>(set.values.data(), count)}};
+    known.push_back(set.name);
+  }
+  if (std::filesystem::exists(source)) return from_file(names.parameters, source);
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  const std::string near = nearest_name(source, names);
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  const std::string near = nearest_name(source, known);
   throw std::invalid_argument(
       fmt::format("--parameters={}: neither a file nor a name this data set knows{}; known: {}", source,
                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near), list));
 }
 
+void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets) {
+  const auto same = [&](const ParameterSet& s) { return s.label == set.label; };
+  if (std::any_of(sets.begin(), sets.end(), same))
+    throw std::invalid_argument(
+        fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
+  sets.push_back(std::move(set));
+}
+
 std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
                                               const std::vector<std::string>& lists) {
+  const ParameterNames names = parameter_names(loaded);
   std::vector<ParameterSet> sets;
   for (const std::string& source : split_sources(lists))
-    for (ParameterSet& set : read_parameters(loaded, source)) {
-      const auto same = [&](const ParameterSet& s) { return s.label == set.label; };
-      if (std::any_of(sets.begin(), sets.end(), same))
-        throw std::invalid_argument(
-            fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
-      sets.push_back(std::move(set));
-    }
+    for (ParameterSet& set : read_parameters(names, source)) add_parameter_set(std::move(set), sets);
   for (const ParameterSet& set : sets) warn_outside(loaded, set);
   return sets;
 }

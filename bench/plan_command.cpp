@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/problem_factory.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -96,16 +97,9 @@ Selection select(const simulate::RecordingScenario& s, const PlanOptions& o) {
   return selection;
 }
 
-std::vector<ParameterInfo> parameter_infos(const Robot& robot) {
-  std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : robot.parameters)
-    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  return list;
-}
-
 std::vector<DriveInformation> informations(const simulate::RecordingScenario& s, const Selection& selection,
                                            const PlanOptions& o) {
-  const std::vector<ParameterInfo> parameters = parameter_infos(s.robot);
+  const std::vector<ParameterInfo> parameters = robot_parameters(s.robot);
   const Vector truth = Eigen::Map<const Vector>(s.truth.parameters.data(), kCalibrationParameters);
   const std::uint64_t seed = derive_seed(o.seed, {"plan", s.name});
   std::vector<DriveInformation> list(selection.drives.size());
@@ -242,7 +236,7 @@ ExitCode plan_command(const PlanOptions& o) {
   checked.drives = selection.drives;
   checked.slip.gains.clear();
   simulate::validate(checked, "--drives");
-  const std::vector<ParameterInfo> parameters = parameter_infos(scenario.robot);
+  const std::vector<ParameterInfo> parameters = robot_parameters(scenario.robot);
   const std::vector<DriveInformation> drives = informations(scenario, selection, o);
   const PlanAnalysis analysis = analyse_drives(drives, selection.counts, parameters, o.wanted);
   std::vector<Table> tables = {parameter_table(analysis, parameters, o.wanted),

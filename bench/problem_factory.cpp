@@ -13,7 +13,6 @@
 #include "solvers/options.hpp"
 
 namespace odobench {
-namespace {
 
 std::vector<ParameterInfo> robot_parameters(const Robot& robot) {
   std::vector<ParameterInfo> list;
@@ -21,8 +20,6 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot) {
     list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
   return list;
 }
-
-}  // namespace
 
 int usual_dimension(const std::string& classic) {
   return classic == "powell" ? 4 : 12;

@@ -20,6 +20,9 @@ struct LoadedProblem {
   std::string dataset_name() const { return dataset ? dataset->name : std::string(); }
 };
 
+// Name, unit, nominal value and box of each.
+std::vector<ParameterInfo> robot_parameters(const Robot& robot);
+
 // `data`: path of set.json, "" for the demo set. Throws DataError on a bad set or one of another kind of
 // robot.
 LoadedProblem load_calibration(const std::string& data);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/evaluate_command.hpp"
+#include "bench/problem_factory.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -29,38 +30,13 @@ struct Outcome {
   std::vector<std::array<double, 2>> arrival;
 };
 
-std::vector<ParameterInfo> parameter_infos(const Robot& robot) {
-  std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : robot.parameters)
-    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  return list;
-}
-
-// What read_parameters needs to know names: the robot and its known sets.
-LoadedProblem named_problem(const simulate::RecordingScenario& s) {
-  simulate::RecordingScenario small = s;
-  small.drives = {s.drives.front()};
-  small.slip.gains.clear();
-  small.repetitions = 1;
-  Dataset set = simulate::simulate_set(small, 1, 1).dataset;
-  const auto model =
-      std::make_shared<const CalibrationProblem>(parameter_infos(s.robot), std::move(set.recordings));
-  set.recordings.clear();
-  return {Problem(model), model, std::move(set), "", ""};
-}
-
 std::vector<ParameterSet> read_sets(const simulate::RecordingScenario& s, const VerifyOptions& o) {
-  const LoadedProblem names = named_problem(s);
-  std::vector<ParameterSet> sets = {{"nominal", names.problem.start()}};
+  const ParameterNames names{robot_parameters(s.robot), simulate::known_parameters(s)};
+  std::vector<ParameterSet> sets = read_parameters(names, "nominal");
   for (const std::string& source : split_sources(o.parameters))
-    for (ParameterSet& set : read_parameters(names, source)) {
-      if (set.label == "nominal" && set.values == sets.front().values) continue;
-      const auto same = [&set](const ParameterSet& other) { return other.label == set.label; };
-      if (std::any_of(sets.begin(), sets.end(), same))
-        throw std::invalid_argument(
-            fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
-      sets.push_back(std::move(set));
-    }
+    for (ParameterSet& set : read_parameters(names, source))
+      if (set.label != "nominal" || set.values != sets.front().values)
+        add_parameter_set(std::move(set), sets);
   return sets;
 }
 
@@ -85,7 +61,7 @@ Outcome drive_once(const simulate::RecordingScenario& s, const Vector& believed,
     }
     outcome.arrival.push_back(mean);
   }
-  const CalibrationProblem problem(parameter_infos(s.robot), std::move(set.dataset.recordings));
+  const CalibrationProblem problem(robot_parameters(s.robot), std::move(set.dataset.recordings));
   std::vector<RecordingError> errors;
   for (const MaxErrors& e : problem.max_errors(believed))
     errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});

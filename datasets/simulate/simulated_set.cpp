@@ -40,9 +40,7 @@ Dataset describe(const RecordingScenario& s, std::uint64_t seed) {
   d.description = s.description;
   d.robot = s.robot;
   for (const Drive& drive : s.drives) d.trajectories.push_back({drive.name, drive.description});
-  d.known_parameters = {
-      {"truth", "the parameters that the drives were made with", listed(s.truth.parameters)},
-      {"believed", "the parameters that the robot steered by", listed(s.control.believed)}};
+  d.known_parameters = known_parameters(s);
   d.provenance.source = "simulated by odobench";
   d.provenance.licence = "MIT";
   d.provenance.made_by = fmt::format("bench simulate --scenario={} --seed={}", s.name, seed);
@@ -55,6 +53,11 @@ double recording_time(const SimulatedDrive& d, double log_s) {
 }
 
 }  // namespace
+
+std::vector<NamedParameters> known_parameters(const RecordingScenario& s) {
+  return {{"truth", "the parameters that the drives were made with", listed(s.truth.parameters)},
+          {"believed", "the parameters that the robot steered by", listed(s.control.believed)}};
+}
 
 SimulatedDrive simulate_drive(const RecordingScenario& s, const Drive& drive, int repetition,
                               std::uint64_t seed) {

@@ -32,6 +32,9 @@ SimulatedSet simulate_set(const RecordingScenario& scenario, std::uint64_t seed,
 SimulatedDrive simulate_drive(const RecordingScenario& scenario, const Drive& drive, int repetition,
                               std::uint64_t seed);
 
+// "truth" and "believed".
+std::vector<NamedParameters> known_parameters(const RecordingScenario& scenario);
+
 // truth.json: the scenario's name, the seed, true parameters, kinematics, offsets and slip; of each recording when the
 // drive began and ended, on the recording's clock.
 std::string truth_json(const RecordingScenario& scenario, std::uint64_t seed, const SimulatedSet& set);
