@@ -1,7 +1,6 @@
 #include "bench/filter_command.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -15,6 +14,7 @@
 #include "bench/filter_signals.hpp"
 #include "bench/filter_statistics.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/progress.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/sha256.hpp"
@@ -86,28 +86,6 @@ class InputRows {
   FilterRunReader data_;
   std::optional<FilterTruthReader> truth_;
   std::deque<FilterInput> ahead_;
-};
-
-class FilterProgress {
- public:
-  explicit FilterProgress(bool wanted) : active_(wanted && ::isatty(STDERR_FILENO) == 1) {}
-  ~FilterProgress() {
-    if (last_ >= 0) std::fputs("\r\x1b[K", stderr);
-  }
-  FilterProgress(const FilterProgress&) = delete;
-  FilterProgress& operator=(const FilterProgress&) = delete;
-  void update(std::int64_t windows) {
-    if (!active_) return;
-    const double now = seconds_since(begin_);
-    if (now - last_ < 0.1) return;
-    last_ = now;
-    std::fputs(fmt::format("\r\x1b[K{} windows, {:.1f} s", windows, now).c_str(), stderr);
-  }
-
- private:
-  const bool active_;
-  const Clock::time_point begin_ = Clock::now();
-  double last_ = -1;
 };
 
 // Everything that happens to a window.
@@ -257,10 +235,10 @@ ExitCode filter_command(const FilterOptions& options) {
   setup.constants.dt = rows.data().dt();
   FilterRun run(options, setup, rows.data(), InterruptGuard::flag());
   {
-    FilterProgress progress(!options.quiet);
+    CountLine progress(!options.quiet, "windows");
     FilterInput input;
     while (rows.next(input) && run.push(input))
-      if (run.slow() || run.windows() % 1024 == 0) progress.update(run.windows());
+      if (run.slow() || run.windows() % 1024 == 0) progress.set(run.windows());
   }
   const bool interrupted = InterruptGuard::flag().load();
   if (run.windows() == 0) throw Interruption();

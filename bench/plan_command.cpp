@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bench/problem_factory.hpp"
+#include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -103,6 +104,8 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
   const Vector truth = Eigen::Map<const Vector>(s.truth.parameters.data(), kCalibrationParameters);
   const std::uint64_t seed = derive_seed(o.seed, {"plan", s.name});
   std::vector<DriveInformation> list(selection.drives.size());
+  const std::int64_t each = s.exact ? 1 : o.replicas;
+  CountLine progress(true, "simulated drives", static_cast<std::int64_t>(list.size()) * each);
   simulate::parallel_for(list.size(), o.threads, [&](std::size_t i) {
     const simulate::Drive& drive = selection.drives[i];
     if (s.exact) {
@@ -111,8 +114,10 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
       return;
     }
     std::vector<Recording> replicas;
-    for (int k = 1; k <= o.replicas; ++k)
+    for (int k = 1; k <= o.replicas; ++k) {
       replicas.push_back(simulate::simulate_drive(s, drive, k, seed).recording);
+      progress.add_one();
+    }
     list[i] = drive_information(drive.name, parameters, replicas, truth);
   });
   return list;

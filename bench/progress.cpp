@@ -70,4 +70,33 @@ std::string ProgressLine::line(std::size_t width) const {
   return text;
 }
 
+CountLine::CountLine(bool wanted, std::string unit, std::int64_t total)
+    : active_(wanted && ::isatty(STDERR_FILENO) == 1), unit_(std::move(unit)), total_(total) {}
+
+CountLine::~CountLine() {
+  if (last_ >= 0) std::fputs("\r\x1b[K", stderr);
+}
+
+void CountLine::set(std::int64_t count) {
+  if (!active_) return;
+  const std::lock_guard lock(mutex_);
+  count_ = count;
+  draw();
+}
+
+void CountLine::add_one() {
+  if (!active_) return;
+  const std::lock_guard lock(mutex_);
+  ++count_;
+  draw();
+}
+
+void CountLine::draw() {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (seconds - last_ < 0.1) return;
+  last_ = seconds;
+  const std::string of = total_ > 0 ? fmt::format(" of {}", total_) : "";
+  std::fputs(fmt::format("\r\x1b[K{}{} {}, {:.1f} s", count_, of, unit_, seconds).c_str(), stderr);
+}
+
 }  // namespace odobench

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <string>
@@ -36,6 +37,31 @@ class ProgressLine {
   double last_ = -1;
   std::size_t done_ = 0;
   std::map<std::size_t, Progress> running_;
+};
+
+// One status line of a count, on a terminal only: "12 of 30 drives, 1.2 s".
+class CountLine {
+ public:
+  // `total` 0: not known.
+  CountLine(bool wanted, std::string unit, std::int64_t total = 0);
+  ~CountLine();
+  CountLine(const CountLine&) = delete;
+  CountLine& operator=(const CountLine&) = delete;
+
+  // From any thread.
+  void set(std::int64_t count);
+  void add_one();
+
+ private:
+  void draw();
+
+  const bool active_;
+  const std::string unit_;
+  const std::int64_t total_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  std::int64_t count_ = 0;
+  double last_ = -1;
 };
 
 // Columns of the terminal behind a file descriptor, `otherwise` when it is none.

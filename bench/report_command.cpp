@@ -17,6 +17,7 @@
 #include "datasets/file_io.hpp"
 #include "reports/report_document.hpp"
 #include "reports/vega.hpp"
+#include "reports/web_assets.hpp"
 
 namespace odobench {
 namespace {
@@ -74,6 +75,8 @@ ExitCode report_command(const ReportOptions& options) {
   if (!options.out.empty()) {
     write_file(options.out, render_html(document));
     written.emplace_back(options.out);
+    if (!has_chart_library())
+      note("built without the chart library (npm was not there): the page has its tables, but no figures");
     note(fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
                      document.sections.size()));
   }

@@ -10,6 +10,7 @@
 
 #include "bench/evaluate_command.hpp"
 #include "bench/problem_factory.hpp"
+#include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/simulate/parallel.hpp"
@@ -213,11 +214,16 @@ ExitCode verify_command(const VerifyOptions& o) {
     simulate::validate(scenarios.back(), fmt::format("--parameters: set '{}'", set.label));
   }
   Outcomes outcomes(sets.size());
-  for (std::size_t i = 0; i < sets.size(); ++i)
-    for (int k = 1; k <= o.repeat; ++k)
-      outcomes[i].push_back(drive_once(scenarios[i], sets[i].values,
-                                       derive_seed(o.seed, {"verify", scenario.name, std::to_string(k)}),
-                                       o.threads));
+  {
+    CountLine progress(true, "tours of all drives", static_cast<std::int64_t>(sets.size()) * o.repeat);
+    for (std::size_t i = 0; i < sets.size(); ++i)
+      for (int k = 1; k <= o.repeat; ++k) {
+        outcomes[i].push_back(drive_once(scenarios[i], sets[i].values,
+                                         derive_seed(o.seed, {"verify", scenario.name, std::to_string(k)}),
+                                         o.threads));
+        progress.add_one();
+      }
+  }
   const TableMaker maker(sets, outcomes);
   std::vector<Table> tables;
   for (std::size_t t = 0; t < scenario.drives.size(); ++t)
