@@ -15,6 +15,8 @@ namespace {
 
 // Rows; a table with more scrolls inside the page.
 constexpr std::size_t kLongTable = 40;
+// Characters; a longer text is not squeezed into a narrow column.
+constexpr int kLongText = 48;
 
 struct ColumnLayout {
   int tail = 0;  // characters after the number that every row keeps free, so that numbers stand under numbers
@@ -87,10 +89,11 @@ std::string body_cell(const Cell& cell, const ColumnLayout& column, bool first) 
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", exact_text(*cell.value));
   if (cell.difference) attributes += fmt::format(" data-difference=\"{}\"", exact_text(*cell.difference));
   const char* tag = first ? "th" : "td";
-  const std::string content = cell_content(cell, column);
-  return fmt::format(
-      "<{}{}>{}</{}>", tag, attributes,
-      cell.best ? "<b class=\"best\" title=\"best of the column\">" + content + "</b>" : content, tag);
+  std::string content = cell_content(cell, column);
+  if (cell.best) content = "<b class=\"best\" title=\"best of the column\">" + content + "</b>";
+  if (!cell.value && display_width(cell.text) > kLongText)
+    content = "<div class=\"text\">" + content + "</div>";
+  return fmt::format("<{}{}>{}</{}>", tag, attributes, content, tag);
 }
 
 std::string column_groups(const std::vector<ColumnLayout>& layout) {
