@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -31,7 +32,14 @@ ReportInput report_input(const ReportOptions& options, const std::vector<RunReco
   input.notes = notes_of_best(records);
   for (const std::string& run : options.runs) {
     const fs::path folder = fs::is_directory(run) ? fs::path(run) : fs::path(run).parent_path();
-    if (std::optional<TrackSet> tracks = read_tracks(folder)) input.tracks.push_back(std::move(*tracks));
+    std::optional<TrackSet> tracks = read_tracks(folder);
+    // A .jsonl file may lie beside the tracks of another run.
+    const auto belongs = [&](const RunRecord& r) {
+      return r.problem == tracks->problem && r.dataset == tracks->dataset &&
+             r.dataset_sha256 == tracks->dataset_sha256;
+    };
+    if (tracks && std::any_of(records.begin(), records.end(), belongs))
+      input.tracks.push_back(std::move(*tracks));
   }
   bool drives = false;
   for (const RunRecord& r : records) drives = drives || !r.errors.empty();

@@ -178,11 +178,16 @@ class Builder {
 
   // Of calibrations, or of the fusion.
   void tracks_of(bool fusion, Section& section) {
+    const auto wanted = [&](const TrackSet& set) { return (set.problem == kFusionProblem) == fusion; };
+    const bool several = std::count_if(input_.tracks.begin(), input_.tracks.end(), wanted) > 1;
     for (std::size_t i = 0; i < input_.tracks.size(); ++i) {
       const TrackSet& set = input_.tracks[i];
-      if ((set.problem == kFusionProblem) != fusion) continue;
+      if (!wanted(set)) continue;
+      const std::size_t before = section.blocks.size();
       const std::string prefix = input_.tracks.size() > 1 ? fmt::format("{}.", i + 1) : "";
       add_track_figures(set, prefix, section, document_, kTrackRows / input_.tracks.size());
+      for (std::size_t b = before; several && b < section.blocks.size(); ++b)
+        std::get<Figure>(section.blocks[b]).title += fmt::format(" ({}, {})", i + 1, set.dataset);
     }
   }
 

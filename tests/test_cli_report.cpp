@@ -98,6 +98,15 @@ TEST_F(CliReport, WithoutTracksItSaysSo) {
   EXPECT_THAT(content(out_ / "lone.html"), Not(HasSubstr("data-figure=\"path.")));
 }
 
+TEST_F(CliReport, TracksOfAnotherRunAreNotShown) {
+  std::filesystem::copy(run_, out_ / "mixed", std::filesystem::copy_options::recursive);
+  expect_success({"--solver=lm", "--problem=rosenbrock", "--quiet", "--out=" + (out_ / "other").string()});
+  std::filesystem::copy(out_ / "other" / "runs.jsonl", out_ / "mixed" / "other.jsonl");
+  expect_success(
+      {"report", (out_ / "mixed" / "other.jsonl").string(), "--out=" + (out_ / "r.html").string()});
+  EXPECT_THAT(content(out_ / "r.html"), Not(HasSubstr("data-figure=\"path.")));
+}
+
 TEST_F(CliReport, FiguresAreSvgFiles) {
   if (!has_chart_library()) GTEST_SKIP() << "built without the chart library";
   if (std::system("node --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
