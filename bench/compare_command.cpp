@@ -8,6 +8,7 @@
 
 #include "bench/check_command.hpp"
 #include "bench/number_text.hpp"
+#include "bench/option_values.hpp"
 #include "bench/run_arguments.hpp"
 #include "bench/table_output.hpp"
 #include "solvers/options.hpp"
@@ -25,17 +26,6 @@ Metrics: J, total, total_x, total_y, total_theta, e_sr.TRAJECTORY.x (.y, .theta;
 seconds, and the statistics of filter runs and windows by name (statistics: all of them). A limit has the sign of the worse
 direction; it fails when the change of the medians passes it and is sure: docs/cli.md says when it is.
 Exit codes: 0 no limit passed for sure, 1 a limit passed, 2 wrong usage, 3 wrong data.)";
-
-std::vector<std::string> split(const std::vector<std::string>& lists) {
-  std::vector<std::string> items;
-  for (const std::string& list : lists)
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      items.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  return items;
-}
 
 Gate parse_gate(const std::string& text) {
   const auto refuse = [&](const std::string& found) {
@@ -108,7 +98,7 @@ bool draws_random_numbers(const RunRecord& record) {
 
 std::vector<Gate> parse_gates(const std::vector<std::string>& lists) {
   std::vector<Gate> gates;
-  for (const std::string& text : split(lists)) {
+  for (const std::string& text : comma_items(lists)) {
     gates.push_back(parse_gate(text));
     for (std::size_t i = 0; i + 1 < gates.size(); ++i)
       if (gates[i].metric == gates.back().metric)
@@ -146,7 +136,7 @@ ExitCode compare_command(const CompareArguments& a) {
   const Format format = parse_format(a.format);
   CompareOptions options;
   options.gates = parse_gates(a.fail_on);
-  options.metrics = split(a.metrics);
+  options.metrics = comma_items(a.metrics);
   options.alpha = a.alpha;
   options.gate_foreign_times = a.gate_foreign_times;
   options.random = draws_random_numbers;

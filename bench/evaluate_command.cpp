@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "bench/context.hpp"
+#include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
@@ -109,11 +110,7 @@ std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
       sources.push_back(list);
       continue;
     }
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      sources.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    for (std::string& item : comma_items(list)) sources.push_back(std::move(item));
   }
   return sources.empty() ? std::vector<std::string>{"nominal"} : sources;
 }
@@ -166,9 +163,7 @@ std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
 
 ExitCode evaluate_command(const EvaluateOptions& options) {
   const Format format = parse_format(options.format);
-  if (!options.tracks.empty() && !options.overwrite && std::filesystem::exists(options.tracks))
-    throw std::invalid_argument(
-        fmt::format("--tracks={}: it exists; choose another name or give --overwrite", options.tracks));
+  refuse_existing("--tracks", options.tracks, options.overwrite);
   if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   const LoadedProblem loaded = load_calibration(options.data);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);

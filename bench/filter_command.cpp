@@ -14,6 +14,7 @@
 #include "bench/filter_signals.hpp"
 #include "bench/filter_statistics.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/option_values.hpp"
 #include "bench/progress.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
@@ -199,12 +200,6 @@ std::string setup_note(const FilterOptions& options, const FilterSetup& setup) {
       setup.turn_accelerations ? "turned from the robot's frame" : "in the filter's frame",
       setup.omega_cross_v ? ", less omega x v" : "",
       setup.rotation_sign > 0 ? "wheel 1 front right" : "wheel 1 rear left");
-}
-
-void refuse_existing(const char* option, const std::string& path, bool overwrite) {
-  if (!path.empty() && !overwrite && fs::exists(path))
-    throw std::invalid_argument(
-        fmt::format("{}={}: it exists; choose another name or give --overwrite", option, path));
 }
 
 // Of a pipe there is nothing left to sum.

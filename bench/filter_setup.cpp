@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bench/option_values.hpp"
 #include "problems/entropy/entropy_model.hpp"
 #include "solvers/options.hpp"
 
@@ -51,10 +52,7 @@ ColumnMapping parse_columns(const char* option, const std::vector<std::string>& 
                             const std::vector<std::string>& known) {
   ColumnMapping mapping;
   for (const std::string& list : lists)
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      const std::string item = list.substr(begin, end - begin);
-      begin = end + 1;
+    for (const std::string& item : comma_items(list)) {
       const auto equals = item.find('=');
       if (equals == std::string::npos || equals == 0 || equals + 1 == item.size())
         throw std::invalid_argument(

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
+#include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
@@ -31,10 +31,6 @@ const std::vector<FilterChoice>& known_filters() {
       {"ekf-literal", true, FilterKind::Extended, false, true},
   };
   return list;
-}
-
-int thread_count(int asked) {
-  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 // What one recording gave.
@@ -167,14 +163,8 @@ Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::strin
 }
 
 std::vector<FilterChoice> parse_filters(const std::vector<std::string>& lists) {
-  std::vector<std::string> names, wanted;
+  std::vector<std::string> names, wanted = comma_items(lists);
   for (const FilterChoice& f : known_filters()) names.push_back(f.name);
-  for (const std::string& list : lists)
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      wanted.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
   if (wanted.empty()) wanted = {"none", "ekf", "ukf"};
   std::vector<FilterChoice> filters;
   for (const std::string& name : wanted) {

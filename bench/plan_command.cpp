@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
@@ -41,17 +42,6 @@ std::vector<simulate::Drive> choices(const simulate::RecordingScenario& s) {
   return all;
 }
 
-std::vector<std::string> split(const std::vector<std::string>& lists) {
-  std::vector<std::string> words;
-  for (const std::string& list : lists)
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      words.push_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  return words;
-}
-
 std::size_t index_of(const std::vector<simulate::Drive>& all, const std::string& name, const char* option) {
   std::vector<std::string> names;
   std::string list;
@@ -79,8 +69,8 @@ Selection select(const simulate::RecordingScenario& s, const PlanOptions& o) {
   if (o.drives.empty())
     for (std::size_t i = 0; i < s.drives.size(); ++i) counts[i] = s.repetitions;
   else if (!(o.drives.size() == 1 && o.drives.front() == "none"))
-    for (const std::string& name : split(o.drives)) ++counts[index_of(all, name, "--drives")];
-  for (const std::string& name : split(o.candidates)) {
+    for (const std::string& name : comma_items(o.drives)) ++counts[index_of(all, name, "--drives")];
+  for (const std::string& name : comma_items(o.candidates)) {
     if (name == "all")
       candidate.assign(all.size(), true);
     else

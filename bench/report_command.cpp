@@ -11,6 +11,7 @@
 
 #include "bench/check_command.hpp"
 #include "bench/figure_files.hpp"
+#include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
@@ -104,9 +105,7 @@ ExitCode export_command(const ExportOptions& options) {
         "{}: no tracks/tracks.json; runs of 'bench run', 'evaluate' and 'fuse' with --out have one",
         options.run));
   const fs::path out = options.out;
-  if (fs::exists(out) && !options.overwrite)
-    throw std::invalid_argument(
-        fmt::format("--out={}: it exists; choose another name or give --overwrite", options.out));
+  refuse_existing("--out", options.out, options.overwrite);
   FileTransaction transaction;
   std::vector<fs::path> written;
   std::set<std::string> taken;

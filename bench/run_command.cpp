@@ -7,11 +7,11 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/records.hpp"
@@ -138,9 +138,7 @@ ExitCode run_command(const RunOptions& options) {
   std::vector<std::string> labels;
   for (const RunCell& cell : cells) labels.push_back(cell.label());
 
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = thread_count(options.threads);
   const RunContext context = run_context(threads);
   std::unique_ptr<RecordFile> file;
   if (!options.out.empty()) {

@@ -13,6 +13,7 @@
 #include "bench/evaluate_command.hpp"
 #include "bench/fuse_command.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/option_values.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/file_io.hpp"
 #include "problems/fusion/tuning_problem.hpp"
@@ -155,9 +156,7 @@ ExitCode tune_command(const TuneOptions& options) {
   std::vector<std::string> notes;
   const std::vector<SolverSpec> solvers = resolve_solvers(
       options.solvers.empty() ? std::vector<std::string>{"nlopt:bobyqa"} : options.solvers, notes);
-  if (!options.out.empty() && !options.overwrite && std::filesystem::exists(options.out))
-    throw std::invalid_argument(
-        fmt::format("--out={}: it exists; choose another name or give --overwrite", options.out));
+  refuse_existing("--out", options.out, options.overwrite);
   SensorsFile sensors = read_sensors(options.sensors);
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(options.data);

@@ -10,11 +10,11 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/option_values.hpp"
 #include "bench/progress.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
@@ -142,19 +142,14 @@ std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std:
     if (!w.group.empty()) known.push_back(w.group);
   }
   std::set<std::string> wanted;
-  for (const std::string& list : only)
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(',', begin), list.size());
-      const std::string name = list.substr(begin, end - begin);
-      begin = end + 1;
-      if (std::find(known.begin(), known.end(), name) == known.end()) {
-        const std::string near = nearest_name(name, known);
-        throw std::invalid_argument(
-            fmt::format("--only={}: no window or group of the file{}", name,
-                        near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
-      }
-      wanted.insert(name);
+  for (const std::string& name : comma_items(only)) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      const std::string near = nearest_name(name, known);
+      throw std::invalid_argument(fmt::format("--only={}: no window or group of the file{}", name,
+                                              near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
     }
+    wanted.insert(name);
+  }
   std::vector<EntropyWindow> some;
   for (EntropyWindow& w : windows)
     if (wanted.count(w.id) != 0 || wanted.count(w.group) != 0) some.push_back(std::move(w));
@@ -203,9 +198,7 @@ ExitCode windows_command(const WindowsOptions& options) {
   const std::vector<EntropyWindow> windows = chosen(load_entropy_windows(options.file), options.only);
   const std::string stem = std::filesystem::path(options.file).stem().string();
   const std::string sha256 = sha256_of_file(options.file);
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = thread_count(options.threads);
   const RunContext context = run_context(threads);
   const std::size_t per_window = plan_cells(plan, notes).size();
   std::unique_ptr<RecordFile> file;

@@ -117,7 +117,11 @@ Table without(Table table, const std::set<std::string>& ids) {
 class Builder {
  public:
   explicit Builder(const ReportInput& input)
-      : input_(input), sorted_(sorted(input.records)), comparisons_(compare(sorted_.others)) {}
+      : input_(input),
+        sorted_(sorted(input.records)),
+        comparisons_(compare(sorted_.others)),
+        filter_tables_(filter_tables(sorted_.filters)),
+        window_tables_(window_tables(sorted_.windows, false)) {}
 
   Document build() {
     document_.title = input_.title.empty() ? description(input_.records) : input_.title;
@@ -152,9 +156,9 @@ class Builder {
                                       : cost_table(c));
       append(totals_table(c), section);
     }
-    if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables(sorted_.filters).front());
-    for (Table& table : window_tables(sorted_.windows, false))
-      if (table.id == "methods") section.blocks.emplace_back(std::move(table));
+    if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables_.front());
+    for (const Table& table : window_tables_)
+      if (table.id == "methods") section.blocks.emplace_back(table);
     for (const Comparison& c : compare(sorted_.fusions)) append(totals_table(c), section);
     if (!sorted_.fusions.empty() && !sorted_.fusions.front().notes.empty())
       section.blocks.emplace_back(Paragraph{sorted_.fusions.front().notes.front() + "."});
@@ -233,7 +237,7 @@ class Builder {
 
   void filter() {
     Section section{"filter", "Relative-entropy filter", "Signals before and after the filter.", {}};
-    append(filter_tables(sorted_.filters), section);
+    append(filter_tables_, section);
     for (std::size_t i = 0; i < sorted_.filters.size(); ++i)
       add_filter_figures(sorted_.filters[i],
                          sorted_.filters.size() > 1 ? fmt::format("filter{}.", i + 1) : "", section,
@@ -245,9 +249,8 @@ class Builder {
     Section section{
         "windows", "Windows of the relative-entropy filter", "The same windows solved by each method.", {}};
     add_window_figure(sorted_.windows, "", section, document_);
-    std::vector<Table> tables = window_tables(sorted_.windows, false);
-    std::reverse(tables.begin(), tables.end());  // the methods before the many windows
-    append(std::move(tables), section);
+    // The methods before the many windows.
+    append(std::vector<Table>(window_tables_.rbegin(), window_tables_.rend()), section);
     finish(std::move(section));
   }
 
@@ -266,6 +269,7 @@ class Builder {
   const ReportInput& input_;
   const Sorted sorted_;
   const std::vector<Comparison> comparisons_;
+  const std::vector<Table> filter_tables_, window_tables_;
   Document document_;
 };
 

@@ -88,34 +88,27 @@ std::array<double, 3> ranges(const std::vector<Curve>& curves) {
   return result;
 }
 
-struct Decimated {
-  std::string csv;
-  std::size_t rows = 0;
-};
-
-// Rows t,d,s,a,b,c: time, drive, series, the three values.
-Decimated decimated(const std::vector<Curve>& curves, double parts) {
+// Rows t,d,s,a,b,c: time, drive, series, the three values; thinned as finely as stays within `rows`, to 1 / `parts` of the range.
+std::string path_rows(const std::vector<Curve>& curves, std::size_t rows, double& parts) {
   const std::array<double, 3> range = ranges(curves);
-  Decimated out{"t,d,s,a,b,c\n", 0};
-  const auto text = std::back_inserter(out.csv);
-  for (const Curve& curve : curves) {
-    std::vector<DecimatedChannel> channels;
-    for (std::size_t c = 0; c < 3; ++c) channels.push_back({curve.values[c], range[c] / parts});
-    for (const std::size_t k : decimate(curve.time, channels)) {
-      fmt::format_to(text, "{:.6g},{},{},{:.6g},{:.6g},{:.6g}\n", curve.time[k], curve.drive, curve.series,
-                     curve.values[0][k], curve.values[1][k], curve.values[2][k]);
-      ++out.rows;
-    }
-  }
-  return out;
-}
-
-// With the finest resolution that stays within the rows.
-Decimated path_within(const std::vector<Curve>& paths, std::size_t rows, double& parts) {
+  std::vector<std::vector<std::size_t>> kept(curves.size());
   for (parts = kPathResolution;; parts /= 1.3) {
-    Decimated path = decimated(paths, parts);
-    if (path.rows <= rows || parts < 20) return path;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::vector<DecimatedChannel> channels;
+      for (std::size_t c = 0; c < 3; ++c) channels.push_back({curves[i].values[c], range[c] / parts});
+      kept[i] = decimate(curves[i].time, channels);
+      count += kept[i].size();
+    }
+    if (count <= rows || parts < 20) break;
   }
+  std::string csv = "t,d,s,a,b,c\n";
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    for (const std::size_t k : kept[i])
+      fmt::format_to(std::back_inserter(csv), "{:.6g},{},{},{:.6g},{:.6g},{:.6g}\n", curves[i].time[k],
+                     curves[i].drive, curves[i].series, curves[i].values[0][k], curves[i].values[1][k],
+                     curves[i].values[2][k]);
+  return csv;
 }
 
 // A plot of y over x with the same scale on both axes, where that is not too flat or too high to read.
@@ -254,7 +247,7 @@ void add_track_figures(const TrackSet& set, const std::string& prefix, Section& 
     const std::string name = vega::slug(t.name);
     const std::string path_data = prefix + "tracks." + name, error_data = prefix + "errors." + name;
     double parts = 0;
-    document.datasets[path_data] = path_within(t.paths, rows / list.size(), parts).csv;
+    document.datasets[path_data] = path_rows(t.paths, rows / list.size(), parts);
     document.datasets[error_data] = error_rows(t.errors, stretches);
     const std::string thinned = fmt::format("Curves are thinned to within 1/{:.0f} of the range.", parts);
     const auto add = [&](const std::string& kind, const std::string& title, const std::string& caption,

@@ -1,0 +1,39 @@
+#include "bench/option_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
+
+namespace odobench {
+
+std::vector<std::string> comma_items(const std::string& list) {
+  std::vector<std::string> items;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    items.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return items;
+}
+
+std::vector<std::string> comma_items(const std::vector<std::string>& lists) {
+  std::vector<std::string> all;
+  for (const std::string& list : lists)
+    for (std::string& item : comma_items(list)) all.push_back(std::move(item));
+  return all;
+}
+
+void refuse_existing(const char* option, const std::string& path, bool overwrite) {
+  if (!path.empty() && !overwrite && std::filesystem::exists(path))
+    throw std::invalid_argument(
+        fmt::format("{}={}: it exists; choose another name or give --overwrite", option, path));
+}
+
+int thread_count(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace odobench
