@@ -21,16 +21,15 @@ struct Direction {
   Better better;
 };
 // Of the statistics in reports/filter_tables.hpp and reports/window_tables.hpp; others have no direction.
-constexpr std::array<Direction, 10> kDirections{{{"windows_per_second", "", Better::Higher},
-                                                 {"at_optimum", "", Better::Higher},
-                                                 {"gain_", "", Better::Higher},
-                                                 {"hamiltonian_mean", "", Better::Higher},
-                                                 {"gap_", "", Better::Lower},
-                                                 {"iterations_", "", Better::Lower},
-                                                 {"evaluations_", "", Better::Lower},
-                                                 {"noise.", ".after", Better::Lower},
-                                                 {"track.end.filter", "", Better::Lower},
-                                                 {"track.max.filter", "", Better::Lower}}};
+constexpr std::array<Direction, 9> kDirections{{{"windows_per_second", "", Better::Higher},
+                                                {"at_optimum", "", Better::Higher},
+                                                {"gain_", "", Better::Higher},
+                                                {"hamiltonian_mean", "", Better::Higher},
+                                                {"gap_", "", Better::Lower},
+                                                {"iterations_", "", Better::Lower},
+                                                {"evaluations_", "", Better::Lower},
+                                                {"noise.", ".after", Better::Lower},
+                                                {"track.", ".after", Better::Lower}}};
 
 Better direction_of(const std::string& name) {
   const auto ends_with = [&](const std::string& end) {

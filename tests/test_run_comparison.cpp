@@ -229,6 +229,21 @@ TEST(CompareRuns, HigherCanBeBetter) {
   EXPECT_EQ(compare_runs(after, before, options({{"at_optimum", -0.2, false}})).failures(), 0u);
 }
 
+TEST(CompareRuns, DeviationsOfAFilterAreBetterWhenSmaller) {
+  std::vector<RunRecord> before = repeats(1, 0), after = repeats(1, 0);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    for (const char* name :
+         {"track.end.after", "track.max.after", "track.max.before", "noise.ax.rms.after"}) {
+      before[i].statistics[name] = 0.5 + 0.001 * static_cast<double>(i);
+      after[i].statistics[name] = 0.9 + 0.001 * static_cast<double>(i);
+    }
+  const RunComparison c = compare_runs(before, after, options());
+  EXPECT_EQ(change_of(c, "track.end.after").finding, Finding::Worse);
+  EXPECT_EQ(change_of(c, "track.max.after").finding, Finding::Worse);
+  EXPECT_EQ(change_of(c, "noise.ax.rms.after").finding, Finding::Worse);
+  EXPECT_EQ(change_of(c, "track.max.before").finding, Finding::Changed);  // what the sensors did
+}
+
 TEST(ChangeTables, SummaryForACommentComesInOneOrder) {
   const RunComparison c = compare_runs(repeats(1, 0.01), repeats(1.5, 0.01), options({{"J", 0.1, true}}));
   const std::string text = change_summary_markdown(c);
