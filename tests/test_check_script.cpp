@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench::testing {
 namespace {
@@ -16,14 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 ProcessResult check_script(const fs::path& root) {
-  return Process({ODOBENCH_SOURCE_DIR "/scripts/check.sh", root.string()}).wait();
+  return Process({source_dir().string() + "/scripts/check.sh", root.string()}).wait();
 }
 
 // A checkout in miniature, without violations.
 class MiniatureTree {
  public:
   MiniatureTree() {
-    fs::copy_file(fs::path(ODOBENCH_SOURCE_DIR) / ".clang-format", folder_ / ".clang-format");
+    fs::copy_file(source_dir() / ".clang-format", folder_ / ".clang-format");
     write("CMakeLists.txt", "project(miniature)  # never -ffast-math\n");
     write("datasets/recording.hpp", "#pragma once\n");
     write("problems/problem.hpp", "// A comment first.\n#pragma once\n#include \"datasets/recording.hpp\"\n");

@@ -10,6 +10,7 @@
 #include "reports/record.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -108,7 +109,7 @@ TEST(Cli, FindsTheTrueParametersOfTheDemoSet) {
   const TemporaryFolder folder;
   const std::string out = (folder / "out").string();
   ASSERT_EQ(run_bench({"--solver=lm", "--out=" + out}).exit_code, 0);
-  const Dataset demo = load_dataset(std::filesystem::path(ODOBENCH_SOURCE_DIR) / "datasets/demo/set.json");
+  const Dataset demo = load_dataset(source_dir() / "datasets/demo/set.json");
   const auto truth = std::find_if(demo.known_parameters.begin(), demo.known_parameters.end(),
                                   [](const NamedParameters& p) { return p.name == "truth"; });
   ASSERT_NE(truth, demo.known_parameters.end());
@@ -260,7 +261,7 @@ TEST(Cli, TakesOptionsFromConfigFiles) {
 TEST(Cli, EvaluatesFilesAndKnownNames) {
   const TemporaryFolder folder;
   nlohmann::json nominal;
-  const Dataset demo = load_dataset(std::filesystem::path(ODOBENCH_SOURCE_DIR) / "datasets/demo/set.json");
+  const Dataset demo = load_dataset(source_dir() / "datasets/demo/set.json");
   for (const RobotParameter& p : demo.robot.parameters) nominal[p.name] = p.nominal;
   nlohmann::json outside = nominal;
   outside["name"] = "too wide";
@@ -281,8 +282,8 @@ TEST(Cli, ListsWhatThereIs) {
   EXPECT_THAT(solvers.out, HasSubstr("lm,lambda,0.001"));
   EXPECT_THAT(run_bench({"list", "problems"}).out, HasSubstr("rosenbrock"));
   EXPECT_THAT(run_bench({"list", "data"}).out, HasSubstr("datasets/demo/set.json"));
-  const ProcessResult set = run_bench(
-      {"list", "data", std::string(ODOBENCH_SOURCE_DIR) + "/datasets/demo/set.json", "--format=md"});
+  const ProcessResult set =
+      run_bench({"list", "data", source_dir().string() + "/datasets/demo/set.json", "--format=md"});
   EXPECT_EQ(set.exit_code, 0) << set.err;
   EXPECT_THAT(set.out, HasSubstr("30 of 6 trajectories"));
   EXPECT_THAT(set.out, HasSubstr("rotation_cw"));
@@ -292,8 +293,7 @@ TEST(Cli, DemoMakesTheSetOfTheRepository) {
   const TemporaryFolder folder;
   const ProcessResult demo = run_bench({"demo", "--out=" + (folder / "demo").string()});
   ASSERT_EQ(demo.exit_code, 0) << demo.err;
-  const std::filesystem::path committed =
-      std::filesystem::path(ODOBENCH_SOURCE_DIR) / "datasets/demo/set.json";
+  const std::filesystem::path committed = source_dir() / "datasets/demo/set.json";
   EXPECT_EQ(content(folder / "demo/set.json"), content(committed));
   EXPECT_EQ(run_bench({"demo", "--out=" + (folder / "demo").string()}).exit_code,
             2);  // not replaced silently

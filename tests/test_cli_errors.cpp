@@ -8,6 +8,7 @@
 
 #include "reports/record.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -37,7 +38,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }
 
 fs::path demo_folder() {
-  return fs::path(ODOBENCH_SOURCE_DIR) / "datasets" / "demo";
+  return source_dir() / "datasets" / "demo";
 }
 
 // The demo set with one piece of its set.json replaced; its recordings are copied along.

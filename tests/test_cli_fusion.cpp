@@ -8,6 +8,7 @@
 #include "datasets/dataset.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -21,7 +22,7 @@ using testing::ProcessResult;
 using testing::run_bench;
 using testing::TemporaryFolder;
 
-const std::string kSource = ODOBENCH_SOURCE_DIR;
+const std::string kSource = source_dir().string();
 const std::string kTurn = kSource + "/datasets/systems/turn3d.json";
 const std::string kHeading = kSource + "/datasets/sensors/heading_only.json";
 

@@ -11,6 +11,7 @@
 #include "datasets/sha256.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -44,7 +45,7 @@ std::set<std::string> verbs_of_help() {
 }
 
 std::string source(const std::string& path) {
-  return (std::filesystem::path(ODOBENCH_SOURCE_DIR) / path).string();
+  return (source_dir() / path).string();
 }
 
 // Nine windows' worth of rows of a robot that stands still.

@@ -8,6 +8,7 @@
 
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -75,7 +76,7 @@ class CliLatex : public ::testing::Test {
 };
 
 std::string source(const std::string& path) {
-  return (std::filesystem::path(ODOBENCH_SOURCE_DIR) / path).string();
+  return (source_dir() / path).string();
 }
 
 TEST_F(CliLatex, TablesOfRunsCompile) {

@@ -15,6 +15,7 @@
 #include "reports/web_assets.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -28,7 +29,7 @@ using testing::ProcessResult;
 using testing::run_bench;
 using testing::TemporaryFolder;
 
-const std::string kSource = ODOBENCH_SOURCE_DIR;
+const std::string kSource = source_dir().string();
 
 void expect_success(const std::vector<std::string>& words) {
   const ProcessResult result = run_bench(words);

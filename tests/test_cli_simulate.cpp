@@ -7,6 +7,7 @@
 
 #include "datasets/dataset.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -286,8 +287,8 @@ TEST(CliSimulateErrors, BadScenarios) {
 // Every key that the schema lists is known to the program, and every key the program knows is in the schema.
 TEST(CliSimulateErrors, TheSchemaListsTheKeysTheProgramKnows) {
   const TemporaryFolder folder;
-  const nlohmann::json schema = nlohmann::json::parse(
-      content(fs::path(ODOBENCH_SOURCE_DIR) / "datasets" / "scenarios" / "schema.json"));
+  const nlohmann::json schema =
+      nlohmann::json::parse(content(source_dir() / "datasets" / "scenarios" / "schema.json"));
   std::size_t blocks = 0;
   const auto compare = [&](const std::string& scenario, const nlohmann::json& properties) {
     const std::string file = folder.file("unknown.json", scenario);

@@ -9,11 +9,12 @@
 #include "datasets/dataset.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench::testing {
 namespace {
 
-const std::string kDemoSet = ODOBENCH_SOURCE_DIR "/datasets/demo/set.json";
+const std::string kDemoSet = source_dir().string() + "/datasets/demo/set.json";
 
 std::vector<std::string> fields(const std::string& line) {
   std::vector<std::string> list;

@@ -15,6 +15,7 @@
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/small_dataset.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -159,7 +160,7 @@ TEST(Dataset, ASetWrittenByHandNeedsLittle) {
 }
 
 TEST(Dataset, TheDocumentedExampleLoads) {
-  const std::string text = read_file(fs::path(ODOBENCH_SOURCE_DIR) / "docs/data_format.md");
+  const std::string text = read_file(source_dir() / "docs/data_format.md");
   const std::size_t from = text.find("```json\n") + 8;
   const TemporaryFolder folder;
   const Dataset d = load_dataset(folder.file("set.json", text.substr(from, text.find("```", from) - from)));

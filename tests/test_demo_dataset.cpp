@@ -12,6 +12,7 @@
 #include "datasets/file_io.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 #include "tests/support/vitko_problem.hpp"
 
 namespace odobench {
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kCommitted = fs::path(ODOBENCH_SOURCE_DIR) / "datasets" / "demo";
+const fs::path kCommitted = source_dir() / "datasets" / "demo";
 
 const Dataset& demo() {
   static const Dataset set = load_dataset(kCommitted / "set.json");

@@ -13,6 +13,7 @@
 #include "reports/statistics.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/report_records.hpp"
+#include "tests/support/source_dir.hpp"
 #include "tests/support/vitko_problem.hpp"
 
 namespace odobench {
@@ -21,8 +22,7 @@ namespace {
 using simulate::RecordingScenario;
 
 RecordingScenario known(const std::string& name) {
-  return simulate::read_scenario(JsonNode::read(std::filesystem::path(ODOBENCH_SOURCE_DIR) / "datasets" /
-                                                "scenarios" / (name + ".json")));
+  return simulate::read_scenario(JsonNode::read(source_dir() / "datasets" / "scenarios" / (name + ".json")));
 }
 Vector vector_of(const simulate::Parameters& z) {
   return Eigen::Map<const Vector>(z.data(), kCalibrationParameters);

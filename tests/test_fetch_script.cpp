@@ -8,6 +8,7 @@
 #include "datasets/file_io.hpp"
 #include "datasets/sha256.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -21,8 +22,7 @@ class FetchScript : public ::testing::Test {
   void SetUp() override {
     if (shell("command -v git sha256sum").exit_code != 0) GTEST_SKIP() << "needs git and sha256sum";
     fs::create_directories(root_ / "scripts");
-    fs::copy_file(fs::path(ODOBENCH_SOURCE_DIR) / "scripts/fetch_vitko2024.sh",
-                  root_ / "scripts/fetch_vitko2024.sh");
+    fs::copy_file(source_dir() / "scripts/fetch_vitko2024.sh", root_ / "scripts/fetch_vitko2024.sh");
     write_file(root_ / "scripts/vitko2024.sha256",
                sha256("one\n") + "  abs_1.csv\n" + sha256("two\n") + "  odom_1.csv\n");
     write_file(root_ / "origin/dataset/abs_1.csv", "one\n");

@@ -18,6 +18,7 @@
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -340,7 +341,7 @@ TEST(ImportVitko2024, ReproducesThePublishedRecordings) {
 
 TEST(ImportVitko2024, TheCheckedInSumsAreThoseOfTheFiles) {
   ODOBENCH_NEEDS_SHARED();
-  EXPECT_EQ(read_file(fs::path(ODOBENCH_SOURCE_DIR) / "scripts/vitko2024.sha256"),
+  EXPECT_EQ(read_file(source_dir() / "scripts/vitko2024.sha256"),
             read_file(testing::shared_folder() / "datasets/vitko2024/SHA256SUMS"));
 }
 

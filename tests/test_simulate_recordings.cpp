@@ -14,6 +14,7 @@
 #include "reports/statistics.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/shared_data.hpp"
+#include "tests/support/source_dir.hpp"
 #include "tests/support/vitko_problem.hpp"
 
 namespace odobench::simulate {
@@ -23,8 +24,7 @@ constexpr double kSpeedQuantum = 0.229 * 2 * std::numbers::pi / 60;
 constexpr double kSteeringQuantum = 2 * std::numbers::pi / 4096;
 
 RecordingScenario known(const std::string& name) {
-  return read_scenario(JsonNode::read(std::filesystem::path(ODOBENCH_SOURCE_DIR) / "datasets" / "scenarios" /
-                                      (name + ".json")));
+  return read_scenario(JsonNode::read(source_dir() / "datasets" / "scenarios" / (name + ".json")));
 }
 
 const SimulatedSet& nominal_set() {
@@ -267,8 +267,7 @@ TEST(SimulateRecordings, OpenLoopHasNoOvershootAndDrifts) {
 
 TEST(SimulateRecordings, EveryKnownScenarioIsValid) {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ODOBENCH_SOURCE_DIR) /
-                                                               "datasets" / "scenarios")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_dir() / "datasets" / "scenarios")) {
     if (entry.path().stem() == "schema") continue;
     const ScenarioHead head = read_head(JsonNode::read(entry.path()));
     EXPECT_EQ(head.name, entry.path().stem());

@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/source_dir.hpp"
+
 namespace odobench::testing {
 
 // $ODOBENCH_SHARED, or the folder shared/ beside the repository.
 inline std::filesystem::path shared_folder() {
   if (const char* folder = std::getenv("ODOBENCH_SHARED")) return folder;
-  return std::filesystem::path(ODOBENCH_SOURCE_DIR).parent_path() / "shared";
+  return source_dir().parent_path() / "shared";
 }
 inline bool has_shared() {
   return std::filesystem::exists(shared_folder() / "reference");
