@@ -102,6 +102,11 @@ template <class M>
 concept HasBlockQuadratic = requires(const M& m) {
   { m.block_quadratic() } -> std::convertible_to<const BlockQuadratic&>;
 };
+// An upper estimate, in units of the cost, of what rounding leaves in cost(x): below it nothing can be told.
+template <class M>
+concept HasRoundingFloor = requires(const M& m, const ConstVectorRef& x) {
+  { m.rounding_floor(x) } -> std::convertible_to<double>;
+};
 // Lowest cost in the box, where it is known from theory.
 template <class M>
 concept HasKnownOptimum = requires(const M& m) {
@@ -135,6 +140,8 @@ class Problem {
   bool has_gradient() const { return model_->has_gradient; }
   bool has_residuals() const { return model_->has_residuals; }
   bool has_normal_equations() const { return model_->has_normal_equations; }
+  // Normal equations are the products of residuals and Jacobian, not a form of the model's own.
+  bool forms_normal_equations() const { return model_->forms_normal_equations; }
   bool has_fast_batch() const { return model_->has_batch; }
   Eigen::Index residual_count() const { return model_->residual_count; }
   bool has_lattice() const { return !model_->lattice_levels.empty(); }
@@ -142,6 +149,9 @@ class Problem {
   const std::vector<Vector>& lattice_levels() const { return model_->lattice_levels; }
   // Null when the cost has no such form.
   const BlockQuadratic* block_quadratic() const { return model_->block_quadratic(); }
+
+  // 0 where the model does not state one. Not counted.
+  double rounding_floor(const ConstVectorRef& x) const { return model_->rounding_floor(x); }
 
   double cost(const ConstVectorRef& x) const;
   // Returns J, fills g = dJ/dx (n). Throws std::logic_error without has_gradient().
@@ -162,6 +172,7 @@ class Problem {
  private:
   struct Interface {
     virtual ~Interface() = default;
+    virtual double rounding_floor(const ConstVectorRef& x) const = 0;
     virtual double cost(const ConstVectorRef& x) const = 0;
     virtual double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const = 0;
     virtual void residuals(const ConstVectorRef& x, VectorRef r) const = 0;
@@ -175,6 +186,7 @@ class Problem {
     Vector start;
     std::optional<double> known_optimum;
     bool has_gradient = false, has_residuals = false, has_normal_equations = false, has_batch = false;
+    bool forms_normal_equations = false;
     Eigen::Index residual_count = 0;
     std::vector<Vector> lattice_levels;
   };
@@ -196,10 +208,17 @@ struct Problem::Holder final : Interface {
     if constexpr (HasKnownOptimum<M>) known_optimum = model->known_optimum();
     has_residuals = HasResiduals<M>;
     has_normal_equations = HasNormalEquations<M> || HasResiduals<M>;
+    forms_normal_equations = HasResiduals<M> && !HasNormalEquations<M>;
     has_gradient = HasGradient<M> || has_normal_equations;
     has_batch = HasBatchCost<M>;
     if constexpr (HasResiduals<M>) residual_count = model->residual_count();
     if constexpr (HasLattice<M>) lattice_levels = model->lattice_levels();
+  }
+  double rounding_floor(const ConstVectorRef& x) const override {
+    if constexpr (HasRoundingFloor<M>)
+      return model->rounding_floor(x);
+    else
+      return 0.0;
   }
   double cost(const ConstVectorRef& x) const override { return model->cost(x); }
   double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const override {

@@ -212,7 +212,7 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& prog
                   program.dual_infeasibility(), program.mu(), program.iterations());
   switch (status) {
     case Ipopt::Solve_Succeeded:
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("Ipopt: KKT error <= {:.2g}; {}", options.tolerance, numbers)};
     case Ipopt::Solved_To_Acceptable_Level:
     case Ipopt::Search_Direction_Becomes_Too_Small:
@@ -260,7 +260,7 @@ Outcome InteriorPoint::minimise(Run& run) const {
   const double cost = run.cost(run.start());
   if (run.stop()) return {};
   if (!std::isfinite(cost)) return {Termination::Failed, "the cost at the start is not finite"};
-  if (cost == 0) return {Termination::Converged, "cost 0 at the start"};
+  if (cost == 0) return {Termination::Settled, "cost 0 at the start"};
 
   std::unique_lock<std::mutex> lock(ipopt_mutex());
   const Ipopt::SmartPtr<BoxProgram> program = new BoxProgram(run, options_, 1.0 / std::abs(cost), lock);
