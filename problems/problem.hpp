@@ -107,10 +107,17 @@ template <class M>
 concept HasRoundingFloor = requires(const M& m, const ConstVectorRef& x) {
   { m.rounding_floor(x) } -> std::convertible_to<double>;
 };
-// Lowest cost in the box, where it is known from theory.
+// Lowest cost in the box, where it is known: from theory, certified, or the lowest that anyone has found (the model says
+// which). Empty where a model knows it for some of its instances only.
 template <class M>
 concept HasKnownOptimum = requires(const M& m) {
-  { m.known_optimum() } -> std::convertible_to<double>;
+  { m.known_optimum() } -> std::convertible_to<std::optional<double>>;
+};
+// Points in the box where the known optimum is attained, as far as they are known (rounded to the digits they were
+// stated with): the certified or published one first, then those of the same cost by a symmetry of the model.
+template <class M>
+concept HasKnownMinimisers = requires(const M& m) {
+  { m.known_minimisers() } -> std::convertible_to<std::vector<Vector>>;
 };
 
 // Value handle around a shared, immutable model; counts the evaluations made through it. Copying is cheap and the
@@ -136,6 +143,12 @@ class Problem {
   // The model's start, by default the nominal values.
   const Vector& start() const { return model_->start; }
   std::optional<double> known_optimum() const { return model_->known_optimum; }
+  // Empty where none is known.
+  const std::vector<Vector>& known_minimisers() const { return model_->known_minimisers; }
+  // The first of them.
+  std::optional<Vector> known_minimiser() const {
+    return known_minimisers().empty() ? std::nullopt : std::optional<Vector>(known_minimisers().front());
+  }
 
   bool has_gradient() const { return model_->has_gradient; }
   bool has_residuals() const { return model_->has_residuals; }
@@ -185,6 +198,7 @@ class Problem {
     std::vector<ParameterInfo> parameters;
     Vector start;
     std::optional<double> known_optimum;
+    std::vector<Vector> known_minimisers;
     bool has_gradient = false, has_residuals = false, has_normal_equations = false, has_batch = false;
     bool forms_normal_equations = false;
     Eigen::Index residual_count = 0;
@@ -206,6 +220,7 @@ struct Problem::Holder final : Interface {
     parameters = model->parameters();
     if constexpr (HasStart<M>) start = model->start();
     if constexpr (HasKnownOptimum<M>) known_optimum = model->known_optimum();
+    if constexpr (HasKnownMinimisers<M>) known_minimisers = model->known_minimisers();
     has_residuals = HasResiduals<M>;
     has_normal_equations = HasNormalEquations<M> || HasResiduals<M>;
     forms_normal_equations = HasResiduals<M> && !HasNormalEquations<M>;
