@@ -21,9 +21,9 @@ struct CeresOptions {
   std::string strategy = "lm";
   bool active_set = true;
   std::string residuals = "compressed";
-  double radius = 1e4;
+  double radius = 1e3;
   double gradient_tolerance = 1e-10;
-  double cost_tolerance = 1e-14;
+  double cost_tolerance = 1e-16;
   int iterations = 1000;
   void bind(OptionBinder& binder);
   void validate() const {}

@@ -10,6 +10,11 @@
 // Problems that have normal equations of their own (one pass over long recordings) are solved on those; all others on a
 // QR factor of J, since J'J has half the digits of J (NIST's Bennett5 and Lanczos problems need the others).
 //
+// The largest-column scale keeps some valleys from being entered (NIST's MGH10 from its first start crawls along a wrong
+// one for thousands of steps), the scale of the box others. A path that has not ended after `patience` iterations, or
+// that stalls, is set aside, a second one with D = 1 in unit coordinates takes as many from the start, and the lower
+// of the two goes on.
+//
 // A point whose derivatives are not finite is a rejected step. The method ends when the projected gradient, relative to
 // the cost, is below its tolerance; when the *undamped* model promises less than cost_tolerance of the cost, or no more
 // than rounding explains (a large lambda alone makes any step small, a wrong Jacobian does too); or when lambda has
@@ -24,7 +29,8 @@ struct LevenbergMarquardtOptions {
   double lambda = 1e-3;  // initial damping, relative to D^2
   double gradient_tolerance = 1e-10;
   double cost_tolerance = 1e-15;
-  int iterations = 1000;
+  int iterations = 2000;
+  int patience = 300;
   void bind(OptionBinder& binder);
   void validate() const;
 };

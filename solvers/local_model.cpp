@@ -17,8 +17,8 @@ constexpr Eigen::Index kMostFactored = 200;
 
 }  // namespace
 
-LocalModel::LocalModel(const Problem& problem)
-    : factored_(problem.forms_normal_equations() && problem.dimension() <= kMostFactored) {}
+LocalModel::LocalModel(const Problem& problem, StepScale scale)
+    : factored_(problem.forms_normal_equations() && problem.dimension() <= kMostFactored), scale_(scale) {}
 
 bool LocalModel::evaluate(Run& run, const Vector& u) {
   return factored_ ? evaluate_residuals(run, u) : evaluate_normal_equations(run, u);
@@ -26,7 +26,11 @@ bool LocalModel::evaluate(Run& run, const Vector& u) {
 
 void LocalModel::remember_lengths(const Vector& lengths) {
   length_ = lengths / residual_norm_;
-  largest_ = largest_.size() == 0 ? lengths : largest_.cwiseMax(lengths);
+  if (largest_.size() > 0)
+    largest_ = largest_.cwiseMax(lengths);
+  else
+    largest_ = lengths;
+  if (scale_ == StepScale::Box) largest_.setConstant(largest_.maxCoeff());
 }
 
 bool LocalModel::evaluate_normal_equations(Run& run, const Vector& u) {

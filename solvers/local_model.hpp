@@ -6,11 +6,17 @@
 
 namespace odobench {
 
+// What a step is measured with, D in lambda |D d|^2.
+enum class StepScale {
+  LargestColumn,  // D_i the largest |J_i| met so far (More 1978)
+  Box             // D_i the same for all: unit coordinates, whose unit is half the box
+};
+
 // Everything is in units of |r| at the point, so that no factor on the cost changes a bit or leaves the range of doubles.
 class LocalModel {
  public:
   // `problem` decides the form: its own normal equations, or a QR factor of the Jacobian.
-  explicit LocalModel(const Problem& problem);
+  LocalModel(const Problem& problem, StepScale scale);
 
   // Derivatives at u, one evaluation of the run. False, and the model stays as it was, where they are not finite or the
   // run has been stopped.
@@ -18,7 +24,7 @@ class LocalModel {
   double cost() const { return cost_; }
   // max over free i of |J'r|_i / (|J_i| |r|), see solvers/optimality.hpp.
   double projected_cosine(const Vector& u) const;
-  // argmin |r + J d|^2 + lambda |D d|^2 in lower <= d <= upper, D_i the largest |J_i| of all points evaluated.
+  // argmin |r + J d|^2 + lambda |D d|^2 in lower <= d <= upper.
   Vector step(double lambda, const Vector& lower, const Vector& upper) const;
   // What the undamped model gains by d, as a part of the cost.
   double decrease(const Vector& d) const;
@@ -31,6 +37,7 @@ class LocalModel {
   void remember_lengths(const Vector& lengths);
 
   bool factored_;
+  StepScale scale_;
   double cost_ = 0;
   Vector gradient_;       // J'r / r'r
   Vector length_;         // |J_i| / |r|
