@@ -41,7 +41,7 @@ struct TracePoint {
 // value <= limit. value: what a step inside the box still promises, as a part of the cost; not-a-number where cost or
 // derivatives are not finite.
 struct OptimalityRecord {
-  std::string test;  // "a bounded Gauss-Newton step", "a projected-gradient step", "no free parameter"
+  std::string test;  // "a bounded Gauss-Newton step", "a bounded Newton step", "no free parameter"
   double value = 0;
   double limit = 0;
   std::int64_t evaluations = 0;  // made for the test, not counted among those of the run

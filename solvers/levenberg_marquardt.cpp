@@ -13,6 +13,8 @@ namespace odobench {
 namespace {
 
 constexpr double kLargestDamping = 1e20;
+// Differences of costs that are this part of them are mostly rounding.
+constexpr double kUnresolved = 1e-14;
 
 // The damping and how it follows the gain ratio.
 class Damping {
@@ -92,10 +94,17 @@ class Descent {
     if (better) {
       u_ = candidate;
       damping_.accepted((before - cost) / (predicted * before));
-    } else {
-      damping_.rejected();
+      return std::nullopt;
     }
-    return std::nullopt;
+    damping_.rejected();
+    if (predicted > kUnresolved) return std::nullopt;
+    const double promise = model_.decrease(model_.step(0, lower, upper));
+    if (promise > 10 * kUnresolved) return std::nullopt;
+    return Outcome{
+        Termination::Settled,
+        fmt::format("a predicted decrease of {:.2g} times the cost is lost in its rounding, the undamped "
+                    "one is {:.2g} <= {:.0e}",
+                    predicted, promise, 10 * kUnresolved)};
   }
 
   Run& run_;

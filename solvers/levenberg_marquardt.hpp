@@ -29,7 +29,7 @@ struct LevenbergMarquardtOptions {
   double lambda = 1e-3;  // initial damping, relative to D^2
   double gradient_tolerance = 1e-10;
   double cost_tolerance = 1e-15;
-  int iterations = 2000;
+  int iterations = 1000;
   int patience = 300;
   void bind(OptionBinder& binder);
   void validate() const;

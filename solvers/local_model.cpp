@@ -24,23 +24,21 @@ bool LocalModel::evaluate(Run& run, const Vector& u) {
   return factored_ ? evaluate_residuals(run, u) : evaluate_normal_equations(run, u);
 }
 
-void LocalModel::remember_lengths(const Vector& lengths) {
-  length_ = lengths / residual_norm_;
-  if (largest_.size() > 0)
-    largest_ = largest_.cwiseMax(lengths);
-  else
-    largest_ = lengths;
-  if (scale_ == StepScale::Box) largest_.setConstant(largest_.maxCoeff());
+// `squares`: |J_i|^2 / |r|^2 at the present point, whose |r|^2 is `cost`. What was met before is kept in the same unit, so
+// that no square root comes between the cost's scale and the step.
+void LocalModel::remember(const Vector& squares, double cost) {
+  damping_ = damping_.size() == 0 ? squares : (damping_ * (cost_ / cost)).cwiseMax(squares);
+  if (scale_ == StepScale::Box) damping_.setConstant(damping_.maxCoeff());
+  length_ = squares.cwiseSqrt();
+  cost_ = cost;
 }
 
 bool LocalModel::evaluate_normal_equations(Run& run, const Vector& u) {
   NormalEquations e;
   if (!std::isfinite(run.normal_equations(u, e))) return false;
-  cost_ = e.cost;
-  residual_norm_ = std::sqrt(e.cost);
   gradient_ = e.jtr / e.cost;
   curvature_ = e.jtj / e.cost;
-  remember_lengths(e.jtj.diagonal().cwiseMax(0.0).cwiseSqrt());
+  remember(curvature_.diagonal().cwiseMax(0.0), e.cost);
   return true;
 }
 
@@ -49,13 +47,12 @@ bool LocalModel::evaluate_residuals(Run& run, const Vector& u) {
   Matrix j(r.size(), u.size());
   const double cost = run.residuals_and_jacobian(u, r, j);
   if (!std::isfinite(cost)) return false;
-  cost_ = cost;
-  residual_norm_ = r.stableNorm();
-  Vector lengths(u.size());
-  for (Eigen::Index i = 0; i < u.size(); ++i) lengths[i] = j.col(i).stableNorm();
-  remember_lengths(lengths);
-  j /= residual_norm_;
-  r /= residual_norm_;
+  const double norm = r.stableNorm();
+  j /= norm;
+  r /= norm;
+  Vector squares(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) squares[i] = j.col(i).squaredNorm();
+  remember(squares, cost);
   gradient_ = j.transpose() * r;
   if (j.rows() <= j.cols()) {
     factor_ = std::move(j);
@@ -78,17 +75,16 @@ double LocalModel::projected_cosine(const Vector& u) const {
 
 Vector LocalModel::step(double lambda, const Vector& lower, const Vector& upper) const {
   const Eigen::Index m = gradient_.size();
-  const Vector scale = largest_ / residual_norm_;
   if (factored_) {
     if (lambda == 0) return solve_box_least_squares(factor_, rotated_, lower, upper);
     Matrix a(factor_.rows() + m, m);
-    a << factor_, Matrix((std::sqrt(lambda) * scale).asDiagonal());
+    a << factor_, Matrix((lambda * damping_).cwiseSqrt().asDiagonal());
     Vector b(factor_.rows() + m);
     b << rotated_, Vector::Zero(m);
     return solve_box_least_squares(a, b, lower, upper);
   }
   // A trace of damping keeps the model definite.
-  Vector damping = std::max(lambda, 1e-15) * scale.cwiseAbs2();
+  Vector damping = std::max(lambda, 1e-15) * damping_;
   damping = damping.cwiseMax(1e-16 * std::max(damping.maxCoeff(), std::numeric_limits<double>::min()));
   Matrix h = curvature_;
   h.diagonal() += damping;

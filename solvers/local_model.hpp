@@ -34,18 +34,17 @@ class LocalModel {
  private:
   bool evaluate_normal_equations(Run& run, const Vector& u);
   bool evaluate_residuals(Run& run, const Vector& u);
-  void remember_lengths(const Vector& lengths);
+  void remember(const Vector& squares, double cost);
 
   bool factored_;
   StepScale scale_;
   double cost_ = 0;
-  Vector gradient_;       // J'r / r'r
-  Vector length_;         // |J_i| / |r|
-  Matrix curvature_;      // J'J / r'r where normal equations are used
-  Matrix factor_;         // R / |r|, J = Q R, else
-  Vector rotated_;        // Q'r / |r|
-  Vector largest_;        // D
-  double residual_norm_;  // |r|
+  Vector gradient_;   // J'r / r'r
+  Vector length_;     // |J_i| / |r|
+  Matrix curvature_;  // J'J / r'r where normal equations are used
+  Matrix factor_;     // R / |r|, J = Q R, else
+  Vector rotated_;    // Q'r / |r|
+  Vector damping_;    // D^2 / r'r
 };
 
 }  // namespace odobench

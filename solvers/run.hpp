@@ -17,9 +17,9 @@ namespace odobench {
 
 enum class Termination {
   NotStarted,
-  Converged,       // said by solve() alone: the test of solvers/verdict.hpp holds at the returned point
-  Settled,         // the method ended by its own tolerance, and no derivative can confirm or refute it
-  Stalled,         // no further progress, and optimality is not shown or is refuted
+  Converged,  // said by solve() alone: the test of solvers/verdict.hpp holds at the returned point
+  Settled,    // the method ended by its own tolerance, and there are no derivatives to tell what that means
+  Stalled,    // no further progress, and optimality is not shown or is refuted
   IterationLimit,  // the method's own iteration or generation count is used up
   TargetReached,
   MaxEvaluations,

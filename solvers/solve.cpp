@@ -33,7 +33,7 @@ Outcome run_phase(const Solver& solver, Run& run) {
 }
 
 // Tests the returned point and says what may be said of it. A method that ended by itself has converged where the test
-// holds, whatever it says; has stalled where the test shows something left to gain; else keeps its own word.
+// holds and has stalled where it does not, whatever the method says; without derivatives it keeps its own word.
 void conclude(const Problem& problem, const Outcome& outcome, Result& result) {
   const bool by_itself =
       outcome.termination == Termination::Settled || outcome.termination == Termination::Stalled;
@@ -45,10 +45,7 @@ void conclude(const Problem& problem, const Outcome& outcome, Result& result) {
     return;
   result.check = check_optimality(problem, result.x);
   if (!result.check || !by_itself) return;
-  if (result.check->holds())
-    result.termination = Termination::Converged;
-  else if (result.check->refuted)
-    result.termination = Termination::Stalled;
+  result.termination = result.check->holds() ? Termination::Converged : Termination::Stalled;
   result.message += "; " + result.check->text();
 }
 

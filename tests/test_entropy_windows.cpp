@@ -151,8 +151,11 @@ TEST(EntropyReference, Solvers) {
     EXPECT_EQ(greedy.counts.lattice + 2, expected[i].at("greedy").at("evaluations").get<int>());
     EXPECT_EQ(exact.x, vector_of(expected[i].at("exact").at("t"))) << windows[i].id;
     expect_close(-relaxed.cost, expected[i].at("relaxed_H"), 0, windows[i].id + " relaxed");
+    // On the lattice derivatives say nothing, whatever was proven.
+    EXPECT_EQ(greedy.termination, Termination::Settled) << greedy.brief();
+    EXPECT_EQ(exact.termination, Termination::Settled) << exact.brief();
+    EXPECT_EQ(relaxed.termination, Termination::Converged) << relaxed.brief();
     for (const Result* result : {&greedy, &exact, &relaxed}) {
-      EXPECT_EQ(result->termination, Termination::Converged) << result->brief();
       EXPECT_EQ(result->cost, problem.cost(result->x)) << result->brief();
     }
   }

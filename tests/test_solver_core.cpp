@@ -8,6 +8,7 @@
 #include <set>
 
 #include "problems/classic/classic_problems.hpp"
+#include "solvers/box_quadratic.hpp"
 #include "solvers/levenberg_marquardt.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"

@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -99,6 +100,10 @@ struct Powell : WithOptimum {
 };
 
 struct Rastrigin : WithOptimum {
+  // Each term is a difference of numbers up to 10.
+  double rounding_floor(const ConstVectorRef& x) const {
+    return 20.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(x.size());
+  }
   double cost(const ConstVectorRef& x) const {
     Vector g(x.size());
     return cost_and_gradient(x, g);
