@@ -5,7 +5,6 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 
 namespace odobench {
@@ -142,7 +141,6 @@ struct Powell : WithOptimum {
 };
 
 struct Rastrigin : WithOptimum {
-  std::vector<Vector> known_minimisers() const { return {Vector::Zero(dimension())}; }
   double cost(const ConstVectorRef& x) const {
     Vector g(x.size());
     return cost_and_gradient(x, g);
@@ -156,6 +154,7 @@ struct Rastrigin : WithOptimum {
     }
     return sum;
   }
+  std::vector<Vector> known_minimisers() const { return {Vector::Zero(dimension())}; }
 };
 
 struct Step : WithOptimum {
