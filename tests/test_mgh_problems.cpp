@@ -1,8 +1,10 @@
 // The test problems of More, Garbow and Hillstrom, and the catalogue of all problems without data.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -10,6 +12,7 @@
 #include "solvers/solve.hpp"
 #include "tests/support/jacobian_check.hpp"
 #include "tests/support/mgh_reference.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -364,6 +367,18 @@ TEST(Problem, KnownMinimisersLieInTheBox) {
   model.minimisers = {Vector::Constant(1, 1.0)};
   EXPECT_EQ(Problem{model}.known_minimiser(), Vector::Constant(1, 1.0));
   EXPECT_EQ(make_classic_problem("step", 3).known_minimiser(), std::nullopt);
+}
+
+TEST(ClassicCatalogue, DocumentationListsEveryProblem) {
+  std::ifstream file(testing::source_dir() / "docs" / "problems.md");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  for (const ClassicEntry& entry : classic_catalogue()) {
+    const std::string name = entry.name.substr(0, entry.name.find('/'));
+    EXPECT_NE(text.find("| `" + name + "` |"), std::string::npos) << name;
+    if (entry.best_cost && *entry.best_cost != 0) {
+      EXPECT_NE(text.find(fmt::format(" {:.10g} |", *entry.best_cost)), std::string::npos) << name;
+    }
+  }
 }
 
 // Strictly convex: the conditions of Karush, Kuhn and Tucker hold at one point only, and lm's steps are exact there.
