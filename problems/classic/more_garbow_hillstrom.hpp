@@ -11,7 +11,7 @@
 // Lowest known costs and minimisers stand in mgh_optima.cpp. Other minima where a method may rightly end, with their
 // values in docs/problems.md: freudenstein-roth 48.98425; valleys to infinity of bard (17.4286) and kowalik-osborne (1.02734e-3);
 // plateaus of jennrich-sampson (259.58, 2020), gaussian and gulf (32.835); biggs-exp6 5.65565e-3; trigonometric 2.79506e-5
-// (n = 10); brown-almost-linear 1; osborne-1, osborne-2, broyden-tridiagonal and chebyquad (n = 10: 6.50395e-3, which the paper
+// (n = 10); brown-almost-linear 1; osborne-2 1.78981; osborne-1, broyden-tridiagonal and chebyquad (n = 10: 6.50395e-3, which the paper
 // states; 4.77271e-3 is known). The start of jennrich-sampson/100 has residuals of 1e174: its cost overflows.
 #pragma once
 
