@@ -26,7 +26,6 @@ using testing::lines;
 using testing::Process;
 using testing::ProcessResult;
 using testing::run_bench;
-using testing::source_dir;
 using ::testing::StartsWith;
 using testing::TemporaryFolder;
 using testing::wait_for_lines;
