@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "problems/classic/more_garbow_hillstrom.hpp"
 #include "problems/classic/nist.hpp"
 #include "problems/classic/test_functions.hpp"
 
@@ -33,7 +34,7 @@ std::string DimensionRule::text() const {
 const std::vector<ClassicEntry>& classic_catalogue() {
   static const std::vector<ClassicEntry> catalogue = [] {
     std::vector<ClassicEntry> all;
-    for (const auto& family : {test_function_entries(), nist_entries()})
+    for (const auto& family : {test_function_entries(), nist_entries(), mgh_entries()})
       all.insert(all.end(), family.begin(), family.end());
     return all;
   }();
@@ -63,6 +64,7 @@ Problem make_classic_problem(const std::string& name, int dimension) {
     throw std::invalid_argument(
         fmt::format("problem '{}': dimension {}; expected {}", name, n, entry->dimensions.text()));
   if (entry->family == "nist") return make_nist_problem(name);
+  if (entry->family == "mgh") return make_mgh_problem(name, n);
   return make_test_function(name, n);
 }
 

@@ -7,15 +7,10 @@
 #include <stdexcept>
 
 #include "problems/classic/nist_models.hpp"
+#include "problems/classic/symmetry.hpp"
 
 namespace odobench {
 namespace {
-
-using Groups = std::vector<std::vector<int>>;  // parameters of terms that may change places
-struct Symmetry {
-  Groups terms;
-  Groups signs;  // parameters that may change their signs together
-};
 
 Symmetry symmetry_of(const std::string& name) {
   if (name.starts_with("Lanczos")) return {{{0, 1}, {2, 3}, {4, 5}}, {}};
@@ -24,27 +19,6 @@ Symmetry symmetry_of(const std::string& name) {
   if (name.starts_with("Gauss")) return {{{2, 3, 4}, {5, 6, 7}}, {{4}, {7}}};
   if (name == "Eckerle4") return {{}, {{0, 1}}};
   return {};
-}
-
-// The certified parameters first, then what the symmetry makes of them.
-std::vector<Vector> equivalent(const Vector& certified, const Symmetry& symmetry) {
-  std::vector<std::size_t> order(symmetry.terms.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::vector<Vector> list;
-  do {
-    Vector x = certified;
-    for (std::size_t k = 0; k < order.size(); ++k)
-      for (std::size_t i = 0; i < symmetry.terms[k].size(); ++i)
-        x[symmetry.terms[k][i]] = certified[symmetry.terms[order[k]][i]];
-    for (unsigned flips = 0; flips < 1u << symmetry.signs.size(); ++flips) {
-      Vector y = x;
-      for (std::size_t k = 0; k < symmetry.signs.size(); ++k)
-        if (flips >> k & 1u)
-          for (const int i : symmetry.signs[k]) y[i] = -y[i];
-      list.push_back(y);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  return list;
 }
 
 class Regression {
@@ -59,7 +33,7 @@ class Regression {
     y_ = data.observations.col(0);
     if (data.name == "Nelson") y_ = y_.array().log();
     x_ = data.observations.rightCols(data.observations.cols() - 1).transpose();
-    for (const Vector& x : equivalent(data.certified, symmetry_of(data.name)))
+    for (const Vector& x : equivalent_points(data.certified, symmetry_of(data.name)))
       if (inside(x)) minimisers_.push_back(x);
   }
   std::string name() const { return name_; }

@@ -8,6 +8,8 @@
 // those that give the same curve by a symmetry of the model inside the box (exchanged exponentials, peaks or cycles, the
 // sign of a width). Costs are not finite where a model is not defined or overflows.
 //
+// The months of ENSO are whole numbers: a cycle of b months there also looks like one of 1 / (k +- 1/b) months for every
+// whole k, so that it has further answers of the same cost with a period of about one month or less, which are not listed.
 // Lanczos1 is data without noise to 12 digits, J* = 1.43e-25: there double precision determines the cost to a few
 // per cent only.
 #pragma once

@@ -9,3 +9,7 @@ namespace odobench::testing {
 std::filesystem::path source_dir();
 
 }  // namespace odobench::testing
+
+namespace odobench {
+using testing::source_dir;  // most tests call it by its bare name
+}
