@@ -22,7 +22,9 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot) {
 }
 
 int usual_dimension(const std::string& classic) {
-  return classic == "powell" ? 4 : 12;
+  const ClassicEntry* entry = find_classic_problem(classic);
+  if (entry == nullptr) throw std::invalid_argument(fmt::format("unknown problem '{}'", classic));
+  return entry->dimension;
 }
 
 std::vector<std::string> problem_names() {
@@ -63,8 +65,7 @@ LoadedProblem make_problem(const std::string& name, int dimension, const std::st
   }
   if (!data.empty())
     throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", name));
-  return {make_classic_problem(name, dimension == 0 ? usual_dimension(name) : dimension), nullptr,
-          std::nullopt, "", ""};
+  return {make_classic_problem(name, dimension), nullptr, std::nullopt, "", ""};
 }
 
 }  // namespace odobench

@@ -18,12 +18,20 @@
 namespace odobench {
 namespace {
 
+// Parameters this close to a bound, in units of the width of their box, count as on it: methods that step over bounds land
+// on them, others only come near.
+constexpr double kAtBound = 1e-6;
+
 std::vector<ParameterValue> parameter_values(const std::vector<ParameterInfo>& parameters, const Vector& x) {
   std::vector<ParameterValue> values;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterInfo& p = parameters[i];
     const double value = x[static_cast<Eigen::Index>(i)];
-    const char* at = p.lower == p.upper ? "" : value <= p.lower ? "lower" : value >= p.upper ? "upper" : "";
+    const double near = kAtBound * (p.upper - p.lower);
+    const char* at = p.lower == p.upper        ? ""
+                     : value <= p.lower + near ? "lower"
+                     : value >= p.upper - near ? "upper"
+                                               : "";
     values.push_back({p.name, p.unit, value, p.nominal, p.lower, p.upper, at});
   }
   return values;
@@ -71,6 +79,8 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.budget = budget_figures(budget);
   record.termination = to_string(result.termination);
   record.message = result.message;
+  if (result.check)
+    record.check = {result.check->test, result.check->value, result.check->limit, result.check->evaluations};
   if (result.usable()) {
     record.cost = result.cost;
     describe_point(loaded, result.x, record);

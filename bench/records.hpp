@@ -11,8 +11,7 @@
 
 namespace odobench {
 
-// Parameters count as on a bound when they are equal to it: what solvers return lies in the box to the last
-// bit, and the map of the unit box sends -1 and 1 to the bounds exactly.
+// Parameters count as on a bound within 1e-6 of the width of their box.
 RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
                      const Budget& budget, const Result& result, const RunContext& context,
                      const std::string& time_utc);

@@ -30,6 +30,27 @@ void validate(const std::vector<ParameterInfo>& parameters) {
   }
 }
 
+namespace {
+
+void check_minimisers(const std::string& problem, const std::vector<ParameterInfo>& parameters,
+                      const std::vector<Vector>& minimisers) {
+  for (const Vector& x : minimisers) {
+    if (x.size() != static_cast<Eigen::Index>(parameters.size()))
+      throw std::invalid_argument(fmt::format("problem '{}': a known minimiser has {} values, expected {}",
+                                              problem, x.size(), parameters.size()));
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const ParameterInfo& p = parameters[i];
+      const double value = x[static_cast<Eigen::Index>(i)];
+      if (!(value >= p.lower && value <= p.upper))
+        throw std::invalid_argument(
+            fmt::format("problem '{}', parameter '{}': known minimiser {} outside [{}, {}]", problem, p.name,
+                        value, p.lower, p.upper));
+    }
+  }
+}
+
+}  // namespace
+
 Problem& Problem::operator=(const Problem& other) {
   model_ = other.model_;
   counts_ = {};
@@ -51,6 +72,7 @@ void Problem::adopt(Interface& model) {
   if (model.start.size() != n)
     throw std::invalid_argument(
         fmt::format("problem '{}': start has {} values, expected {}", model.name, model.start.size(), n));
+  check_minimisers(model.name, model.parameters, model.known_minimisers);
   if (model.lattice_levels.empty()) return;
   if (model.lattice_levels.size() != model.parameters.size())
     throw std::invalid_argument(fmt::format("problem '{}': found {} lists of lattice levels, expected {}",

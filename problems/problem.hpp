@@ -102,10 +102,22 @@ template <class M>
 concept HasBlockQuadratic = requires(const M& m) {
   { m.block_quadratic() } -> std::convertible_to<const BlockQuadratic&>;
 };
-// Lowest cost in the box, where it is known from theory.
+// An upper estimate, in units of the cost, of what rounding leaves in cost(x): below it nothing can be told.
+template <class M>
+concept HasRoundingFloor = requires(const M& m, const ConstVectorRef& x) {
+  { m.rounding_floor(x) } -> std::convertible_to<double>;
+};
+// Lowest cost in the box, where it is known: from theory, certified, or the lowest that anyone has found (the model says
+// which). Empty where a model knows it for some of its instances only.
 template <class M>
 concept HasKnownOptimum = requires(const M& m) {
-  { m.known_optimum() } -> std::convertible_to<double>;
+  { m.known_optimum() } -> std::convertible_to<std::optional<double>>;
+};
+// Points in the box where the known optimum is attained, as far as they are known (rounded to the digits they were
+// stated with): the certified or published one first, then those of the same cost by a symmetry of the model.
+template <class M>
+concept HasKnownMinimisers = requires(const M& m) {
+  { m.known_minimisers() } -> std::convertible_to<std::vector<Vector>>;
 };
 
 // Value handle around a shared, immutable model; counts the evaluations made through it. Copying is cheap and the
@@ -131,10 +143,18 @@ class Problem {
   // The model's start, by default the nominal values.
   const Vector& start() const { return model_->start; }
   std::optional<double> known_optimum() const { return model_->known_optimum; }
+  // Empty where none is known.
+  const std::vector<Vector>& known_minimisers() const { return model_->known_minimisers; }
+  // The first of them.
+  std::optional<Vector> known_minimiser() const {
+    return known_minimisers().empty() ? std::nullopt : std::optional<Vector>(known_minimisers().front());
+  }
 
   bool has_gradient() const { return model_->has_gradient; }
   bool has_residuals() const { return model_->has_residuals; }
   bool has_normal_equations() const { return model_->has_normal_equations; }
+  // Normal equations are the products of residuals and Jacobian, not a form of the model's own.
+  bool forms_normal_equations() const { return model_->forms_normal_equations; }
   bool has_fast_batch() const { return model_->has_batch; }
   Eigen::Index residual_count() const { return model_->residual_count; }
   bool has_lattice() const { return !model_->lattice_levels.empty(); }
@@ -142,6 +162,9 @@ class Problem {
   const std::vector<Vector>& lattice_levels() const { return model_->lattice_levels; }
   // Null when the cost has no such form.
   const BlockQuadratic* block_quadratic() const { return model_->block_quadratic(); }
+
+  // 0 where the model does not state one. Not counted.
+  double rounding_floor(const ConstVectorRef& x) const { return model_->rounding_floor(x); }
 
   double cost(const ConstVectorRef& x) const;
   // Returns J, fills g = dJ/dx (n). Throws std::logic_error without has_gradient().
@@ -162,6 +185,7 @@ class Problem {
  private:
   struct Interface {
     virtual ~Interface() = default;
+    virtual double rounding_floor(const ConstVectorRef& x) const = 0;
     virtual double cost(const ConstVectorRef& x) const = 0;
     virtual double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const = 0;
     virtual void residuals(const ConstVectorRef& x, VectorRef r) const = 0;
@@ -174,7 +198,9 @@ class Problem {
     std::vector<ParameterInfo> parameters;
     Vector start;
     std::optional<double> known_optimum;
+    std::vector<Vector> known_minimisers;
     bool has_gradient = false, has_residuals = false, has_normal_equations = false, has_batch = false;
+    bool forms_normal_equations = false;
     Eigen::Index residual_count = 0;
     std::vector<Vector> lattice_levels;
   };
@@ -194,12 +220,20 @@ struct Problem::Holder final : Interface {
     parameters = model->parameters();
     if constexpr (HasStart<M>) start = model->start();
     if constexpr (HasKnownOptimum<M>) known_optimum = model->known_optimum();
+    if constexpr (HasKnownMinimisers<M>) known_minimisers = model->known_minimisers();
     has_residuals = HasResiduals<M>;
     has_normal_equations = HasNormalEquations<M> || HasResiduals<M>;
+    forms_normal_equations = HasResiduals<M> && !HasNormalEquations<M>;
     has_gradient = HasGradient<M> || has_normal_equations;
     has_batch = HasBatchCost<M>;
     if constexpr (HasResiduals<M>) residual_count = model->residual_count();
     if constexpr (HasLattice<M>) lattice_levels = model->lattice_levels();
+  }
+  double rounding_floor(const ConstVectorRef& x) const override {
+    if constexpr (HasRoundingFloor<M>)
+      return model->rounding_floor(x);
+    else
+      return 0.0;
   }
   double cost(const ConstVectorRef& x) const override { return model->cost(x); }
   double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const override {

@@ -64,6 +64,18 @@ TracePoint trace_point_from(const JsonView& view) {
   return {view.at("evaluations").integer(), view.at("seconds").number(), view.at("cost").number()};
 }
 
+json to_json(const OptimalityRecord& c) {
+  return {{"test", c.test},
+          {"value", finite_or_null(c.value)},
+          {"limit", finite_or_null(c.limit)},
+          {"evaluations", c.evaluations}};
+}
+
+OptimalityRecord check_from(const JsonView& view) {
+  return {view.at("test").string(), view.at("value").number(), view.at("limit").number(),
+          view.at("evaluations").integer()};
+}
+
 json to_json(const RunContext& c) {
   return {{"cpu", c.cpu},
           {"compiler", c.compiler},
@@ -122,6 +134,7 @@ void read_identity(const JsonView& view, RunRecord& r) {
 void read_outcome(const JsonView& view, RunRecord& r) {
   r.termination = view.at("termination").string();
   r.message = view.at("message").string();
+  if (const auto check = view.find("check")) r.check = check_from(*check);
   r.cost = view.at("cost").optional_number();
   r.cost_before_polish = view.at("cost_before_polish").optional_number();
   view.at("parameters").each_item([&](const JsonView& item) {
@@ -182,6 +195,7 @@ json to_json(const RunRecord& r) {
            {"context", to_json(r.context)},
            {"time_utc", r.time_utc}};
   for (const auto& [key, value] : r.options) out["options"][key] = value;
+  if (r.check) out["check"] = to_json(*r.check);
   if (!r.group.empty()) out["group"] = r.group;
   for (const auto& [key, value] : r.budget) out["budget"][key] = finite_or_null(value);
   for (const auto& [key, value] : r.statistics) out["statistics"][key] = finite_or_null(value);

@@ -37,6 +37,16 @@ struct TracePoint {
   double cost = 0;  // best so far
 };
 
+// Of the driver's test of first-order optimality at the returned point (docs/solvers.md): `converged` is said where
+// value <= limit. value: what a step inside the box still promises, as a part of the cost; not-a-number where cost or
+// derivatives are not finite.
+struct OptimalityRecord {
+  std::string test;  // "a bounded Gauss-Newton step", "a projected-gradient step", "no free parameter"
+  double value = 0;
+  double limit = 0;
+  std::int64_t evaluations = 0;  // made for the test, not counted among those of the run
+};
+
 struct RunContext {
   std::string cpu;
   std::string compiler;
@@ -65,8 +75,9 @@ struct RunRecord {
   // Limits in force: max_evaluations, max_seconds (0: none), target. Empty in records of versions that did not write it.
   std::map<std::string, double> budget;
 
-  std::string termination;  // converged, target_reached, max_evaluations, ...
-  std::string message;      // the sentence with both numbers, or why it was skipped
+  std::string termination;                // converged, settled, stalled, target_reached, max_evaluations, ...
+  std::string message;                    // the sentence with both numbers, or why it was skipped
+  std::optional<OptimalityRecord> check;  // absent without derivatives, and in records of earlier versions
   std::optional<double> cost;
   std::optional<double> cost_before_polish;
   std::vector<ParameterValue> parameters;

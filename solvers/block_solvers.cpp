@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "solvers/levenberg_marquardt.hpp"
+#include "solvers/box_quadratic.hpp"
 #include "solvers/ternary_search.hpp"
 
 namespace odobench {
@@ -33,7 +33,8 @@ Outcome ExactSearch::minimise(Run& run) const {
   run.iteration();
   run.lattice_visit(*run.problem().lattice_point(quadratic.unstack(t)));
   if (!proven) return {};
-  return {Termination::Converged, fmt::format("no lattice point is lower, {} candidates", found.evaluations)};
+  return {Termination::Settled,
+          fmt::format("proven: no lattice point is lower, {} candidates", found.evaluations), true};
 }
 
 std::string RelaxedSearch::why_not(const Problem& problem) const {
@@ -61,7 +62,7 @@ Outcome RelaxedSearch::minimise(Run& run) const {
   run.iteration();
   run.cost(run.box().to_unit(x));
   if (run.stop()) return {};
-  return {Termination::Converged,
+  return {Termination::Settled,
           fmt::format("{} box-constrained quadratic blocks solved", quadratic.blocks.size())};
 }
 

@@ -1,8 +1,17 @@
 #include "solvers/box.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace odobench {
+namespace {
+
+// Points are measured from the centre in the inner half of the box, so that small numbers in a wide box keep their
+// digits, and from the nearer bound in the outer half, so that points next to a bound keep their distance to it.
+constexpr double kInner = 0.5;
+
+}  // namespace
 
 Box::Box(const std::vector<ParameterInfo>& parameters) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
@@ -13,7 +22,8 @@ Box::Box(const std::vector<ParameterInfo>& parameters) {
     upper_[i] = parameters[static_cast<std::size_t>(i)].upper;
     if (lower_[i] < upper_[i]) free_.push_back(i);
   }
-  half_ = 0.5 * (upper_ - lower_);
+  half_ = 0.5 * upper_ - 0.5 * lower_;
+  centre_ = 0.5 * upper_ + 0.5 * lower_;
 }
 
 Vector Box::to_parameters(const ConstVectorRef& u) const {
@@ -25,7 +35,9 @@ Vector Box::to_parameters(const ConstVectorRef& u) const {
       x[i] = lower_[i];
     else if (v >= 1.0)
       x[i] = upper_[i];
-    else  // measured from the nearer bound, so that points next to a bound keep their distance to it
+    else if (v > -kInner && v < kInner)
+      x[i] = std::clamp(centre_[i] + v * half_[i], lower_[i], upper_[i]);
+    else
       x[i] = std::clamp(v < 0 ? lower_[i] + (v + 1.0) * half_[i] : upper_[i] - (1.0 - v) * half_[i],
                         lower_[i], upper_[i]);
   }
@@ -36,8 +48,11 @@ Vector Box::to_unit(const ConstVectorRef& x) const {
   Vector u(dimension());
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const Eigen::Index i = free_[k];
-    const double from_lower = (x[i] - lower_[i]) / half_[i];
-    const double v = from_lower < 1.0 ? from_lower - 1.0 : 1.0 - (upper_[i] - x[i]) / half_[i];
+    double v = (x[i] - centre_[i]) / half_[i];
+    if (v <= -kInner)
+      v = (x[i] - lower_[i]) / half_[i] - 1.0;
+    else if (v >= kInner)
+      v = 1.0 - (upper_[i] - x[i]) / half_[i];
     u[static_cast<Eigen::Index>(k)] = std::clamp(v, -1.0, 1.0);
   }
   return u;
@@ -65,6 +80,17 @@ NormalEquations Box::to_unit(const NormalEquations& e) const {
     for (Eigen::Index l = 0; l < dimension(); ++l)
       out.jtj(k, l) = e.jtj(parameter_index(k), parameter_index(l)) * half_[parameter_index(k)] *
                       half_[parameter_index(l)];
+  return out;
+}
+
+Vector Box::resolution(const ConstVectorRef& u) const {
+  const Vector x = to_parameters(u);
+  Vector out(dimension());
+  for (Eigen::Index k = 0; k < out.size(); ++k) {
+    const Eigen::Index i = parameter_index(k);
+    const double from = std::abs(u[k]) < kInner ? std::abs(u[k]) : 1.0 - std::min(1.0, std::abs(u[k]));
+    out[k] = std::numeric_limits<double>::epsilon() * std::hypot(x[i] / half_[i], from);
+  }
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "solvers/levenberg_marquardt.hpp"
+#include "solvers/box_quadratic.hpp"
 #include "solvers/ternary_blocks.hpp"
 #include "solvers/ternary_search.hpp"
 

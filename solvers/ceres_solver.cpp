@@ -5,6 +5,7 @@
 #include <glog/logging.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -24,13 +25,8 @@ void silence_glog() {
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
 }
 
-// A bounded Gauss-Newton step that would gain less than this part of the cost is none; a cost below the second number
-// times its start is an exact fit, where only rounding is left to lower.
-constexpr double kNoGain = 1e-12;
-constexpr double kExactFit = 1e-20;
-
 // What the cost function shares with the iteration callback and the outer loop: the point, which of its coordinates
-// are free, the derivatives last evaluated and where.
+// are free, the derivatives last evaluated, as Ceres gets them, and where.
 struct Workspace {
   Run& run;
   bool full = false;
@@ -39,8 +35,14 @@ struct Workspace {
   Vector u;
   std::vector<Eigen::Index> free;
   NormalEquations e;
+  Matrix jacobian;
+  Vector residuals;
   Vector e_at;
   std::exception_ptr error;
+
+  Eigen::Index rows() const { return full ? run.problem().residual_count() : run.dimension() + 1; }
+  // Evaluates at p unless that was done last; false where cost or derivatives are not finite or the driver says stop.
+  bool differentiate(const Vector& p);
 
   Vector point(const double* x) const {
     Vector p = u;
@@ -52,13 +54,35 @@ struct Workspace {
   }
 };
 
+bool Workspace::differentiate(const Vector& p) {
+  if (has_derivatives_at(p)) return true;
+  e_at.resize(0);
+  if (full || run.problem().forms_normal_equations()) {
+    Matrix j(run.problem().residual_count(), p.size());
+    Vector r(j.rows());
+    const double cost = run.residuals_and_jacobian(p, r, j);
+    if (!std::isfinite(cost)) return false;
+    e = {cost, j.transpose() * r, j.transpose() * j};
+    if (full) {
+      jacobian = std::move(j);
+      residuals = std::move(r);
+    } else {
+      compress_residuals(j, r, jacobian, residuals);
+    }
+  } else {
+    if (!std::isfinite(run.normal_equations(p, e))) return false;
+    compress_residuals(e, jacobian, residuals);
+  }
+  e_at = p;
+  return true;
+}
+
 // Sum of squares for Ceres on the free coordinates. Where only the cost is asked for, one residual carries it all:
 // Ceres then looks at nothing but the norm.
 class Residuals final : public ceres::CostFunction {
  public:
   explicit Residuals(Workspace& work) : work_(work) {
-    const Eigen::Index rows = work.full ? work.run.problem().residual_count() : work.run.dimension() + 1;
-    set_num_residuals(static_cast<int>(rows));
+    set_num_residuals(static_cast<int>(work.rows()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(work.free.size()));
   }
 
@@ -82,23 +106,11 @@ class Residuals final : public ceres::CostFunction {
       out[0] = work_.scale * std::sqrt(cost);
       return true;
     }
-    Matrix j;
-    Vector r;
-    if (work_.full) {
-      j.resize(num_residuals(), u.size());
-      r.resize(num_residuals());
-      const double cost = work_.run.residuals_and_jacobian(u, r, j);
-      if (!std::isfinite(cost)) return false;
-      work_.e = {cost, j.transpose() * r, j.transpose() * j};
-    } else {
-      if (!work_.has_derivatives_at(u)) work_.run.normal_equations(u, work_.e);
-      if (!std::isfinite(work_.e.cost)) return false;
-      compress_residuals(work_.e, j, r);
-    }
-    work_.e_at = u;
-    out = work_.scale * r;
+    if (!work_.differentiate(u)) return false;
+    out = work_.scale * work_.residuals;
     const auto columns = static_cast<Eigen::Index>(work_.free.size());
-    Eigen::Map<RowMajor>(jacobian, num_residuals(), columns) = work_.scale * j(Eigen::all, work_.free);
+    Eigen::Map<RowMajor>(jacobian, num_residuals(), columns) =
+        work_.scale * work_.jacobian(Eigen::all, work_.free);
     return true;
   }
 
@@ -188,43 +200,38 @@ void update_free(Workspace& work, bool release) {
   work.free = std::move(free);
 }
 
-// Evaluates the derivatives at work.u unless they are there already; false when the driver says stop.
+// Derivatives at work.u; false when the driver says stop, or when they are not finite there.
 bool refresh(Workspace& work) {
-  if (!work.has_derivatives_at(work.u)) {
-    work.run.normal_equations(work.u, work.e);
-    work.e_at = work.u;
-  }
-  return !work.run.stop();
+  return !work.run.stop() && work.differentiate(work.u) && !work.run.stop();
 }
 
-Outcome converged(double cosine, const CeresOptions& options, int round) {
-  return {Termination::Converged, fmt::format("projected gradient {:.2g} <= {:.2g} (relative) in round {}",
-                                              cosine, options.gradient_tolerance, round)};
+// Why refresh() did not work: the driver's reason replaces this one where it is the driver's.
+Outcome broken(const Workspace& work) {
+  if (work.run.stop_reason() != Termination::NotStarted) return {};
+  return {Termination::Stalled, "the derivatives at the last accepted point are not finite"};
 }
 
-// A round ended without meeting the gradient tolerance: is there anything left to gain?
-Outcome no_progress(const Workspace& work, const std::string& how, double cosine) {
-  const double relative = work.e.cost * work.scale * work.scale;
-  if (relative <= kExactFit)
-    return {Termination::Converged,
-            fmt::format("cost {:.2g} <= {:.2g} times its start: an exact fit", work.e.cost, kExactFit)};
-  const double gain = predicted_gain(work.u, work.e);
-  return {gain <= kNoGain ? Termination::Converged : Termination::Stalled,
-          fmt::format("{}; a bounded step would gain {:.2g} of the cost, projected gradient {:.2g}", how,
-                      gain, cosine)};
+Outcome settled(double cosine, const CeresOptions& options, int round) {
+  return {Termination::Settled, fmt::format("projected gradient {:.2g} <= {:.2g} (relative) in round {}",
+                                            cosine, options.gradient_tolerance, round)};
+}
+
+// A round ended without meeting the gradient tolerance.
+Outcome no_progress(const std::string& how, double cosine) {
+  return {Termination::Stalled, fmt::format("{}, projected gradient {:.2g}", how, cosine)};
 }
 
 // Ceres as it comes.
 Outcome single_round(Workspace& work, const CeresOptions& options) {
   for (Eigen::Index i = 0; i < work.u.size(); ++i) work.free.push_back(i);
   const Round result = solve_free(work, options, options.iterations);
-  if (work.run.stop() || !refresh(work)) return {};
+  if (!refresh(work)) return broken(work);
   const double cosine = projected_cosine(work.u, work.e);
-  if (cosine <= options.gradient_tolerance) return converged(cosine, options, 1);
+  if (cosine <= options.gradient_tolerance) return settled(cosine, options, 1);
   if (result.iterations >= options.iterations)
     return {Termination::IterationLimit,
             fmt::format("{} iterations >= limit {}", result.iterations, options.iterations)};
-  return no_progress(work, "Ceres says: " + result.message, cosine);
+  return no_progress("Ceres says: " + result.message, cosine);
 }
 
 Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
@@ -232,13 +239,13 @@ Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
   bool release = true;
   double last_cost = std::numeric_limits<double>::infinity();
   for (int round = 1;; ++round) {
-    if (work.e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
+    if (work.e.cost == 0) return {Termination::Settled, "cost 0: an exact fit"};
     const double cosine = projected_cosine(work.u, work.e);
-    if (cosine <= options.gradient_tolerance) return converged(cosine, options, round);
+    if (cosine <= options.gradient_tolerance) return settled(cosine, options, round);
     const auto previous = work.free;
     update_free(work, release);
     if (release && previous == work.free && !(last_cost - work.e.cost > options.cost_tolerance * work.e.cost))
-      return no_progress(work, fmt::format("round {} gained nothing", round - 1), cosine);
+      return no_progress(fmt::format("round {} gained nothing", round - 1), cosine);
     if (left <= 0)
       return {Termination::IterationLimit,
               fmt::format("{} iterations >= limit {}", options.iterations, options.iterations)};
@@ -248,13 +255,24 @@ Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
       continue;
     }
     const Round result = solve_free(work, options, left);
-    if (work.run.stop() || !refresh(work)) return {};
+    if (!refresh(work)) return broken(work);
     left -= std::max(1, result.iterations);
     release = !result.arrived;
   }
 }
 
 }  // namespace
+
+void compress_residuals(const Matrix& j, const Vector& r, Matrix& jacobian, Vector& residuals) {
+  const Eigen::Index m = j.cols(), rows = std::min(j.rows(), m + 1);
+  Matrix both(j.rows(), m + 1);
+  both << j, r;
+  const Eigen::HouseholderQR<Matrix> qr(std::move(both));
+  Matrix factor = Matrix::Zero(m + 1, m + 1);
+  factor.topRows(rows) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+  jacobian = factor.leftCols(m);
+  residuals = factor.col(m);
+}
 
 void compress_residuals(const NormalEquations& e, Matrix& jacobian, Vector& residuals) {
   const Eigen::Index m = e.jtr.size();
@@ -299,13 +317,12 @@ std::string CeresSolver::why_not(const Problem& problem) const {
 
 Outcome CeresSolver::minimise(Run& run) const {
   silence_glog();
-  Workspace work{run, options_.residuals == "full", 1.0, run.start(), {}, {}, {}, {}};
-  run.normal_equations(work.u, work.e);
-  if (run.stop()) return {};
-  if (!std::isfinite(work.e.cost))
+  Workspace work{run, options_.residuals == "full", 1.0, run.start(), {}, {}, {}, {}, {}, {}};
+  if (!work.differentiate(work.u)) {
+    if (run.stop()) return {};
     return {Termination::Failed, "the cost or its derivatives at the start are not finite"};
-  if (work.e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
-  work.e_at = work.u;
+  }
+  if (work.e.cost == 0) return {Termination::Settled, "cost 0: an exact fit"};
   work.scale = 1.0 / std::sqrt(work.e.cost);
   return options_.active_set ? active_set_rounds(work, options_) : single_round(work, options_);
 }

@@ -9,7 +9,8 @@
 //
 // Ceres wants residuals, not normal equations. residuals=compressed hands it m + 1 of them per point, R (m + 1 x m)
 // and s (m + 1) with  R'R = J'J,  R's = J'r,  s's = r'r:  the pivoted Cholesky factor of the Gram matrix of [J, r]; every
-// quantity of a trust-region step is the same. residuals=full hands it all rows (residual_count x m, dense).
+// quantity of a trust-region step is the same. Where the problem has residuals and no normal equations of its own, the
+// factor comes from a QR factorisation of [J, r], which keeps the digits that J'J loses. residuals=full hands it all rows (residual_count x m, dense).
 #pragma once
 
 #include "solvers/solver.hpp"
@@ -20,9 +21,9 @@ struct CeresOptions {
   std::string strategy = "lm";
   bool active_set = true;
   std::string residuals = "compressed";
-  double radius = 1e4;
+  double radius = 1e3;
   double gradient_tolerance = 1e-10;
-  double cost_tolerance = 1e-14;
+  double cost_tolerance = 1e-16;
   int iterations = 1000;
   void bind(OptionBinder& binder);
   void validate() const {}
@@ -40,7 +41,9 @@ class CeresSolver final : public Solver {
 
 SolverEntry ceres_entry();
 
-// The compression above: fills R (m + 1 x m) and s (m + 1) for J'J (m x m, positive semidefinite), J'r (m) and
+// The compressions above, from r (k) and J (k x m) themselves:
+void compress_residuals(const Matrix& j, const Vector& r, Matrix& jacobian, Vector& residuals);
+// and from their products: fills R (m + 1 x m) and s (m + 1) for J'J (m x m, positive semidefinite), J'r (m) and
 // r'r >= 0. Directions in which the Gram matrix is indefinite by rounding count as zero.
 void compress_residuals(const NormalEquations& e, Matrix& jacobian, Vector& residuals);
 

@@ -157,10 +157,10 @@ bool CmaDescent::step_without_effect() const {
   return false;
 }
 
-std::string CmaDescent::finished(double cost_tolerance, double step_tolerance) const {
-  if (generation_ == 0) return {};
+std::optional<DescentEnd> CmaDescent::finished(double cost_tolerance, double step_tolerance) const {
+  if (generation_ == 0) return std::nullopt;
   if (!c_.allFinite() || !mean_.allFinite() || !std::isfinite(sigma_))
-    return "the covariance is no longer finite";
+    return DescentEnd{"the covariance is no longer finite"};
   const auto window =
       static_cast<std::size_t>(10.0 + std::ceil(30.0 * static_cast<double>(m_) / population_));
   if (bests_.size() >= window) {
@@ -168,17 +168,21 @@ std::string CmaDescent::finished(double cost_tolerance, double step_tolerance) c
     const auto [low, high] = std::minmax_element(first, bests_.end());
     const double range = std::max(*high - *low, newest_range_);
     if (std::isfinite(*low) && range <= cost_tolerance * std::abs(*low))
-      return fmt::format("cost range {:.2g} <= {:.2g} times the cost", range, cost_tolerance);
+      return DescentEnd{fmt::format("cost range {:.2g} <= {:.2g} times the cost", range, cost_tolerance),
+                        true};
   }
   const double largest = sigma_ * std::max(p_c_.cwiseAbs().maxCoeff(), std::sqrt(c_.diagonal().maxCoeff()));
   if (largest <= step_tolerance * first_sigma_)
-    return fmt::format("standard deviation {:.2g} <= {:.2g} times the first", largest / first_sigma_,
-                       step_tolerance);
-  if (axis_ratio() > 1e7) return fmt::format("axis ratio {:.2g} > 1e7", axis_ratio());
-  if (step_without_effect()) return "a step of 0.1 standard deviations no longer changes the mean";
+    return DescentEnd{fmt::format("standard deviation {:.2g} <= {:.2g} times the first",
+                                  largest / first_sigma_, step_tolerance),
+                      true};
+  if (axis_ratio() > 1e7) return DescentEnd{fmt::format("axis ratio {:.2g} > 1e7", axis_ratio())};
+  if (step_without_effect())
+    return DescentEnd{"a step of 0.1 standard deviations no longer changes the mean", true};
   if (stagnated())
-    return fmt::format("no better median in {} generations", bests_.size() < 20000 ? generation_ : 20000);
-  return {};
+    return DescentEnd{
+        fmt::format("no better median in {} generations", bests_.size() < 20000 ? generation_ : 20000)};
+  return std::nullopt;
 }
 
 }  // namespace odobench

@@ -13,12 +13,19 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "problems/problem.hpp"
 #include "solvers/random.hpp"
 
 namespace odobench {
+
+struct DescentEnd {
+  std::string reason;
+  bool by_tolerance =
+      false;  // costs, steps or the resolution of doubles; not axis ratio, stagnation, overflow
+};
 
 class CmaDescent {
  public:
@@ -35,11 +42,11 @@ class CmaDescent {
   double sigma() const { return sigma_; }
   // Largest axis ratio of the sampling distribution, sqrt(cond C).
   double axis_ratio() const;
-  // Why the descent is over, "" while it goes on. Best costs of the last 10 + 30 m / lambda generations and
+  // Why the descent is over, nothing while it goes on. Best costs of the last 10 + 30 m / lambda generations and
   // all costs of the newest lie within cost_tolerance |J|; every standard deviation is below step_tolerance
   // times the first sigma; axis ratio above 1e7; a step along an axis or coordinate no longer changes the
   // mean; no progress of the median over a long history; a covariance that is no longer finite.
-  std::string finished(double cost_tolerance, double step_tolerance) const;
+  std::optional<DescentEnd> finished(double cost_tolerance, double step_tolerance) const;
 
  private:
   void set_rates();

@@ -25,7 +25,7 @@ struct DescentResult {
   double first_median = std::numeric_limits<double>::infinity();
   std::int64_t evaluations = 0;
   std::string message;
-  bool converged = false;  // by one of its own tests, not by the generation limit
+  Termination end = Termination::IterationLimit;
 };
 
 DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOptions& options) {
@@ -51,9 +51,9 @@ DescentResult descend(Run& run, const DescentSetting& setting, const CmaesOption
       result.first_median = sorted[setting.population / 2];
     }
     descent.update(costs);
-    result.message = descent.finished(options.cost_tolerance, options.step_tolerance);
-    if (!result.message.empty()) {
-      result.converged = true;
+    if (const auto end = descent.finished(options.cost_tolerance, options.step_tolerance)) {
+      result.message = end->reason;
+      result.end = end->by_tolerance ? Termination::Settled : Termination::Stalled;
       return result;
     }
   }
@@ -155,8 +155,7 @@ Outcome Cmaes::minimise(Run& run) const {
   DescentResult best = descend(run, restarts.first(run.start()), options_);
   if (run.stop()) return {};
   restarts.spent(best.evaluations);
-  if (options_.restarts == 0)
-    return {best.converged ? Termination::Converged : Termination::IterationLimit, best.message};
+  if (options_.restarts == 0) return {best.end, best.message};
   for (;;) {
     const DescentResult result = descend(run, restarts.next(run.random()), options_);
     if (run.stop()) return {};
@@ -164,7 +163,7 @@ Outcome Cmaes::minimise(Run& run) const {
     const bool again = same_minimum(best, result);
     if (result.best < best.best) best = result;
     if (again)
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("restart {} ended at the best point again; {}", restarts.count(), result.message)};
     if (restarts.large() >= options_.restarts && !restarts.small_is_next())
       return {Termination::IterationLimit,

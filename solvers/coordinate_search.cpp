@@ -59,10 +59,10 @@ Outcome CoordinateSearch::minimise_on_lattice(Run& run) const {
     if (run.stop()) return {};
     run.iteration();
     if (choice < 0)
-      return {Termination::Converged,
-              fmt::format("no change of one parameter lowers the cost, {} scans", moves + 1)};
+      return {Termination::Settled,
+              fmt::format("no change of one parameter lowers the cost, {} scans", moves + 1), true};
     if (moves == options_.moves)
-      return {Termination::IterationLimit, fmt::format("{} moves >= limit {}", moves, options_.moves)};
+      return {Termination::IterationLimit, fmt::format("{} moves >= limit {}", moves, options_.moves), true};
     point->move(choice, best_level);
     run.lattice_visit(*point);
   }
@@ -82,7 +82,7 @@ Outcome CoordinateSearch::minimise(Run& run) const {
       return {Termination::IterationLimit,
               fmt::format("{} moves >= limit {}, step {:.2g}", options_.moves, options_.moves, step)};
   }
-  return {Termination::Stalled, fmt::format("step {:.2g} < {:.2g}", step, options_.tolerance)};
+  return {Termination::Settled, fmt::format("step {:.2g} < {:.2g}", step, options_.tolerance)};
 }
 
 SolverEntry coordinate_search_entry() {

@@ -173,12 +173,12 @@ Outcome Genetic::modern(Run& run) const {
     const double low = p.costs.minCoeff();
     const double range = p.costs.maxCoeff() - low;
     if (range <= options_.cost_tolerance * std::abs(low))
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("cost range of the population {:.2g} <= {:.2g} times the cost", range,
                           options_.cost_tolerance)};
     const double spread = (p.y.rowwise().maxCoeff() - p.y.rowwise().minCoeff()).maxCoeff();
     if (spread <= 1e-12)
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("width of the population {:.2g} <= 1e-12 of the box", spread)};
     const std::vector<Eigen::Index> chosen = draw_parents(run.random(), p.costs, parents);
     const Brood brood = recombine(run.random(), p.y(Eigen::all, chosen), children, expansion, options_);

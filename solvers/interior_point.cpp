@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "solvers/optimality.hpp"
+#include "solvers/verdict.hpp"
 
 namespace odobench {
 namespace {
@@ -37,8 +38,10 @@ class BoxProgram final : public Ipopt::TNLP {
   using Index = Ipopt::Index;
   using Number = Ipopt::Number;
 
-  BoxProgram(Run& run, const InteriorPointOptions& options, double scale, std::unique_lock<std::mutex>& lock)
+  BoxProgram(Run& run, const InteriorPointOptions& options, Vector start, double scale,
+             std::unique_lock<std::mutex>& lock)
       : run_(run),
+        start_(std::move(start)),
         gauss_newton_(options.hessian != "lbfgs"),
         corrected_(options.hessian == "corrected"),
         scale_(scale),
@@ -58,7 +61,7 @@ class BoxProgram final : public Ipopt::TNLP {
     return true;
   }
   bool get_starting_point(Index n, bool, Number* x, bool, Number*, Number*, Index, bool, Number*) override {
-    std::copy(run_.start().data(), run_.start().data() + n, x);
+    std::copy(start_.data(), start_.data() + n, x);
     return true;
   }
 
@@ -176,6 +179,7 @@ class BoxProgram final : public Ipopt::TNLP {
   }
 
   Run& run_;
+  Vector start_;
   bool gauss_newton_, corrected_;
   double scale_;
   std::unique_lock<std::mutex>& lock_;
@@ -188,12 +192,20 @@ class BoxProgram final : public Ipopt::TNLP {
   std::exception_ptr error_;
 };
 
-void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options) {
+// `again`: a further start, from the end of another; it stays there instead of stepping back to the middle of the box.
+void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options, bool again) {
   list.SetStringValue("sb", "yes");
   list.SetIntegerValue("print_level", 0);
   list.SetStringValue("option_file_name", "");
   list.SetNumericValue("bound_relax_factor", 0);
-  list.SetStringValue("mu_strategy", options.mu_strategy);
+  list.SetStringValue("mu_strategy", again ? "monotone" : options.mu_strategy);
+  if (again) {
+    list.SetNumericValue("mu_init", 1e-9);
+    list.SetNumericValue("bound_push", 1e-9);
+    list.SetNumericValue("bound_frac", 1e-9);
+  }
+  // MUMPS 5.5 counts what it would save of itself at every call, which takes longer than solving a dozen equations.
+  list.SetIntegerValue("min_refinement_steps", 0);
   list.SetStringValue("nlp_scaling_method", options.nlp_scaling);
   list.SetNumericValue("tol", options.tolerance);
   list.SetNumericValue("dual_inf_tol", options.tolerance);
@@ -212,7 +224,7 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& prog
                   program.dual_infeasibility(), program.mu(), program.iterations());
   switch (status) {
     case Ipopt::Solve_Succeeded:
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("Ipopt: KKT error <= {:.2g}; {}", options.tolerance, numbers)};
     case Ipopt::Solved_To_Acceptable_Level:
     case Ipopt::Search_Direction_Becomes_Too_Small:
@@ -230,6 +242,41 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& prog
   }
 }
 
+// One call of Ipopt, from the start of the run or from its best point, with the cost there as unit; `iterations` counts on.
+Outcome start_once(Run& run, InteriorPointOptions options, int& iterations, bool again) {
+  options.iterations -= iterations;
+  std::unique_lock<std::mutex> lock(ipopt_mutex());
+  const Ipopt::SmartPtr<BoxProgram> program =
+      new BoxProgram(run, options, again ? run.best() : run.start(), 1.0 / std::abs(run.best_cost()), lock);
+  Ipopt::ApplicationReturnStatus status = Ipopt::Internal_Error;
+  {
+    const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+    set_options(*application->Options(), options, again);
+    status = application->Initialize("");  // no file name: no ipopt.opt is read
+    if (status == Ipopt::Solve_Succeeded)
+      status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(program)));
+  }
+  program->rethrow();
+  iterations += program->iterations();
+  if (run.stop()) return {};
+  const Outcome outcome = outcome_of(status, *program, options);
+  if (program->last().size() > 0 && program->derivatives(program->last())) {
+    const Vector snapped = put_on_bounds(program->last(), program->equations().jtr, 1e-4);
+    lock.unlock();
+    if (snapped != program->last()) run.cost(snapped);
+    lock.lock();
+  }
+  return outcome;
+}
+
+// A bounded step from the best point promises more than this part of the cost: by normal equations, one evaluation.
+bool promising(Run& run, double part) {
+  NormalEquations e;
+  if (!run.problem().has_normal_equations() || !std::isfinite(run.normal_equations(run.best(), e)))
+    return false;
+  return bounded_promise(run.best(), e) > part;
+}
+
 }  // namespace
 
 void InteriorPointOptions::bind(OptionBinder& binder) {
@@ -243,6 +290,9 @@ void InteriorPointOptions::bind(OptionBinder& binder) {
   binder.number("tolerance", tolerance, "KKT error of the cost relative to its start at which to stop", 1e-16,
                 1);
   binder.integer("iterations", iterations, "iteration limit", 1);
+  binder.integer("restarts", restarts, "further starts from the best point while they gain", 0, 1000);
+  binder.number("restart_gain", restart_gain,
+                "relative gain, had or promised, below which there is no further one", 0, 1);
 }
 
 std::string InteriorPoint::why_not(const Problem& problem) const {
@@ -260,28 +310,22 @@ Outcome InteriorPoint::minimise(Run& run) const {
   const double cost = run.cost(run.start());
   if (run.stop()) return {};
   if (!std::isfinite(cost)) return {Termination::Failed, "the cost at the start is not finite"};
-  if (cost == 0) return {Termination::Converged, "cost 0 at the start"};
+  if (cost == 0) return {Termination::Settled, "cost 0 at the start"};
 
-  std::unique_lock<std::mutex> lock(ipopt_mutex());
-  const Ipopt::SmartPtr<BoxProgram> program = new BoxProgram(run, options_, 1.0 / std::abs(cost), lock);
-  Ipopt::ApplicationReturnStatus status = Ipopt::Internal_Error;
-  {
-    const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
-    set_options(*application->Options(), options_);
-    status = application->Initialize("");  // no file name: no ipopt.opt is read
-    if (status == Ipopt::Solve_Succeeded)
-      status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(GetRawPtr(program)));
+  Outcome outcome;
+  int iterations = 0;
+  for (int start = 0;; ++start) {
+    const double before = run.best_cost();
+    const Outcome ended = start_once(run, options_, iterations, start > 0);
+    if (run.stop()) return {};
+    // What Ipopt has reached once stays reached when a further start breaks down.
+    if (start == 0 || ended.termination != Termination::Failed) outcome = ended;
+    if (ended.termination == Termination::Failed || before == 0) return outcome;
+    const double gain = (before - run.best_cost()) / before;
+    if (start >= options_.restarts || iterations >= options_.iterations ||
+        (start > 0 && gain <= options_.restart_gain) || !promising(run, options_.restart_gain))
+      return outcome;
   }
-  program->rethrow();
-  if (run.stop()) return {};
-  const Outcome outcome = outcome_of(status, *program, options_);
-  if (program->last().size() > 0 && program->derivatives(program->last())) {
-    const Vector snapped = put_on_bounds(program->last(), program->equations().jtr, 1e-4);
-    lock.unlock();
-    if (snapped != program->last()) run.cost(snapped);
-    lock.lock();
-  }
-  return outcome;
 }
 
 SolverEntry interior_point_entry() {

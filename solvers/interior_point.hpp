@@ -6,7 +6,15 @@
 //     hessian=lbfgs          limited-memory BFGS of Ipopt, `memory` pairs: a gradient is enough
 // The bounds are not relaxed, so every point evaluated lies inside the box. Ipopt ends a little inside of
 // active bounds; afterwards coordinates next to a bound that -g points to are put on it and the point is evaluated
-// once more: the best of both counts. The cost is divided by its value at the start: its scale changes nothing.
+// once more: the best of both counts. The cost is divided by its value where Ipopt starts: its scale changes nothing.
+//
+// Ipopt's tolerance is relative to that value, which says little where the cost falls by ten decades. While a bounded
+// Gauss-Newton step from the end (one evaluation) promises more than restart_gain of the present cost, Ipopt is started
+// there again with that cost as unit, a small barrier and without being pushed away from the bounds.
+//
+// What a run costs: MUMPS 5.5 computes the size of a saved instance of itself in every call, 60 % of all instructions of a
+// run of a dozen parameters; there is no other linear solver in Debian's Ipopt. Iterative refinement, which doubles the
+// calls, is left to where the residual asks for it.
 //
 // Ipopt tags its vectors with a global counter and MUMPS keeps global state: neither is safe in several threads. One
 // mutex lets one run at a time into their code; evaluations happen outside it, so runs in parallel still share work.
@@ -23,6 +31,8 @@ struct InteriorPointOptions {
   std::string nlp_scaling = "none";
   double tolerance = 1e-9;
   int iterations = 3000;
+  int restarts = 10;
+  double restart_gain = 1e-10;
   void bind(OptionBinder& binder);
   void validate() const {}
 };

@@ -1,10 +1,24 @@
-// Levenberg-Marquardt for box-constrained least squares on the normal equations (J, J'r, J'J in one pass).
+// Levenberg-Marquardt for box-constrained least squares.
 //
-// Every step solves the damped quadratic model of the cost on the box exactly, in unit coordinates u:
-//     min_d  r'r + 2 (J'r)'d + d'(J'J + lambda D) d    subject to  -1 <= u + d <= 1,   D = diag(J'J),
-// by a primal active-set method. Clipping or projecting an unconstrained step instead stalls on this problem class
-// (docs/solvers.md). lambda follows the gain ratio rho = actual / predicted decrease (Nielsen 1999).
-// Stops when the projected gradient, relative to the cost, or the predicted decrease is below tolerance.
+// Every step solves the damped linear model of the residuals on the box exactly, in unit coordinates u:
+//     min_d  |r + J d|^2 + lambda |D d|^2    subject to  -1 <= u + d <= 1.
+// Clipping or projecting an unconstrained step instead stalls on this problem class (docs/solvers.md). D_i is the largest
+// |J_i| met so far (More 1978): the scale of a parameter whose influence fades does not shrink with it, which is
+// what keeps the step sensible far from the solution. lambda follows the gain ratio rho = actual / predicted decrease
+// (Nielsen 1999).
+//
+// Problems that have normal equations of their own (one pass over long recordings) are solved on those; all others on a
+// QR factor of J, since J'J has half the digits of J (NIST's Bennett5 and Lanczos problems need the others).
+//
+// The largest-column scale keeps some valleys from being entered (NIST's MGH10 from its first start crawls along a wrong
+// one for thousands of steps), the scale of the box others. A path that has not ended after `patience` iterations, or
+// that stalls, is set aside, a second one with D = 1 in unit coordinates takes as many from the start, and the lower
+// of the two goes on.
+//
+// A point whose derivatives are not finite is a rejected step. The method ends when the projected gradient, relative to
+// the cost, is below its tolerance; when the *undamped* model promises less than cost_tolerance of the cost, or no more
+// than rounding explains (a large lambda alone makes any step small, a wrong Jacobian does too); or when lambda has
+// grown out of all proportion.
 #pragma once
 
 #include "solvers/solver.hpp"
@@ -12,10 +26,11 @@
 namespace odobench {
 
 struct LevenbergMarquardtOptions {
-  double lambda = 1e-3;  // initial damping, relative to diag(J'J)
+  double lambda = 1e-3;  // initial damping, relative to D^2
   double gradient_tolerance = 1e-10;
   double cost_tolerance = 1e-15;
-  int iterations = 1000;
+  int iterations = 2000;
+  int patience = 300;
   void bind(OptionBinder& binder);
   void validate() const;
 };
@@ -31,9 +46,5 @@ class LevenbergMarquardt final : public Solver {
 };
 
 SolverEntry levenberg_marquardt_entry();
-
-// min_d g'd + 1/2 d'H d subject to lower <= d <= upper, H symmetric positive definite (m x m), lower <= 0 <= upper.
-// Primal active-set method; returns d with every multiplier of the right sign. At most 50 m changes of the set.
-Vector solve_box_quadratic(const Matrix& h, const Vector& g, const Vector& lower, const Vector& upper);
 
 }  // namespace odobench

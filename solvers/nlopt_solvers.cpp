@@ -44,8 +44,12 @@ class Objective {
  public:
   Objective(Run& run, const NloptAlgorithm& algorithm) : run_(run), algorithm_(algorithm) {}
 
+  // Costs are divided by this one from now on; what was remembered in the old unit is forgotten.
   void set_scale(double cost) {
-    if (std::isfinite(cost) && cost != 0) scale_ = 1.0 / std::abs(cost);
+    if (!std::isfinite(cost) || cost == 0) return;
+    scale_ = 1.0 / std::abs(cost);
+    worst_ = 0;
+    lowest_ = kInfinity;
   }
   void attach(nlopt_opt handle) { handle_ = handle; }
   int evaluations() const { return evaluations_; }
@@ -56,6 +60,7 @@ class Objective {
   // Gradient of the scaled cost at the lowest point where one was evaluated, and that point.
   const Vector& gradient() const { return gradient_; }
   const Vector& gradient_at() const { return gradient_at_; }
+  double lowest() const { return std::abs(lowest_); }
 
   static double call(unsigned n, const double* x, double* gradient, void* self) {
     return static_cast<Objective*>(self)->evaluate(n, x, gradient);
@@ -194,38 +199,19 @@ nlopt_result start_once(Run& run, nlopt_opt handle, const Objective& objective, 
   return code;
 }
 
-bool arrived(const Objective& objective, const NloptOptions& options) {
-  if (!objective.has_gradient()) return false;
-  const Vector u = put_on_bounds(objective.gradient_at(), objective.gradient(), options.xtol);
-  return projected_gradient(u, objective.gradient()) <= options.gradient_tolerance;
+// Ended by one of its tolerances, which say that it has stopped moving and not that it has arrived.
+Outcome ended(nlopt_result code, const std::string& how) {
+  const bool by_tolerance = code == NLOPT_FTOL_REACHED || code == NLOPT_XTOL_REACHED || code == NLOPT_SUCCESS;
+  return {by_tolerance ? Termination::Settled : Termination::Stalled, how};
 }
 
-// NLopt's tolerances say that a method has stopped moving, not that it has arrived. Arrived is what shows a small
-// projected gradient, or where there are normal equations, a bounded step that would gain next to nothing; that
-// costs one evaluation more.
-Outcome judge(Run& run, const Objective& objective, const NloptOptions& options, const std::string& how) {
-  if (objective.has_gradient()) {
-    const Vector u = put_on_bounds(objective.gradient_at(), objective.gradient(), options.xtol);
-    const double size = projected_gradient(u, objective.gradient());
-    if (u != objective.gradient_at()) run.cost(u);
-    if (size <= options.gradient_tolerance)
-      return {Termination::Converged,
-              fmt::format("projected gradient {:.2g} <= {:.2g} of the cost at the start ({})", size,
-                          options.gradient_tolerance, how)};
-  }
-  if (!run.problem().has_normal_equations() || !run.has_best())
-    return {Termination::Stalled, how + "; optimality is not known"};
-  const Vector u = run.best();
-  NormalEquations e;
-  run.normal_equations(u, e);
-  if (run.stop()) return {};
-  if (e.cost == 0) return {Termination::Converged, "cost 0: an exact fit"};
-  const double gain = predicted_gain(u, e);
-  if (gain <= options.gain_tolerance)
-    return {Termination::Converged, fmt::format("a bounded step would gain {:.2g} <= {:.2g} of the cost ({})",
-                                                gain, options.gain_tolerance, how)};
-  return {Termination::Stalled, fmt::format("{}; a bounded step would gain {:.2g} > {:.2g} of the cost", how,
-                                            gain, options.gain_tolerance)};
+// The projected gradient at the lowest point that has one, relative to the cost there; coordinates next to a bound that
+// -g points to count as on it, and that point is evaluated. No number without a gradient.
+double slope_on_bounds(Run& run, const Objective& objective, double xtol) {
+  if (!objective.has_gradient()) return std::numeric_limits<double>::infinity();
+  const Vector u = put_on_bounds(objective.gradient_at(), objective.gradient(), xtol);
+  if (u != objective.gradient_at()) run.cost(u);
+  return projected_gradient(u, objective.gradient()) / objective.lowest();
 }
 
 }  // namespace
@@ -237,12 +223,9 @@ void NloptOptions::bind(OptionBinder& binder) {
   binder.integer("evaluations", evaluations, "evaluation limit of its own", 1);
   if (algorithm->gradient && !algorithm->global)
     binder.number("gradient_tolerance", gradient_tolerance,
-                  "largest projected gradient, relative to the cost at the start, that counts as converged",
-                  0, 1);
+                  "no further start when the projected gradient is at most this part of the cost", 0, 1);
   if (!algorithm->global) {
     binder.integer("restarts", restarts, "further starts from the best point while they gain", 0, 1000);
-    binder.number("gain_tolerance", gain_tolerance,
-                  "predicted relative gain of a bounded step that counts as converged", 0, 1);
     binder.number("restart_gain", restart_gain,
                   "relative gain of a start below which there is no further one", 0, 1);
   }
@@ -307,15 +290,22 @@ Outcome NloptSolver::minimise(Run& run) const {
     // MLSL gives up when one of its local searches fails: it is sent on. Other global methods are done.
     const bool broken_off = algorithm.local && code < 0 && round < kMostBrokenOff;
     if (broken_off) continue;
-    if (algorithm.global) return {Termination::Stalled, in_words(code, options_)};
+    if (algorithm.global) return ended(code, in_words(code, options_));
+    if (algorithm.gradient && !objective.has_gradient())
+      return {Termination::Failed, "the derivatives at the start are not finite"};
+    const double slope = slope_on_bounds(run, objective, options_.xtol);
+    if (run.stop()) return {};
 
     const double gain =
         before == run.best_cost() ? 0.0 : (before - run.best_cost()) / std::abs(run.best_cost());
     before = run.best_cost();
-    const bool more = round < options_.restarts && (round == 0 || gain > options_.restart_gain);
-    if (more && !arrived(objective, options_)) continue;
-    return judge(run, objective, options_,
-                 fmt::format("{}, start {} gained {:.2g}", in_words(code, options_), round + 1, gain));
+    const std::string how =
+        fmt::format("{}, start {} gained {:.2g}", in_words(code, options_), round + 1, gain);
+    if (slope <= options_.gradient_tolerance)
+      return {Termination::Settled, fmt::format("projected gradient {:.2g} <= {:.2g} of the cost ({})", slope,
+                                                options_.gradient_tolerance, how)};
+    if (round >= options_.restarts || (round > 0 && gain <= options_.restart_gain)) return ended(code, how);
+    objective.set_scale(run.best_cost());
   }
 }
 

@@ -1,13 +1,12 @@
 // The algorithms of NLopt 2.7.1 (S. G. Johnson) that apply to a box without other constraints, as nlopt:NAME.
 //
-// They see unit coordinates u in [-1, 1]^m and the cost divided by its value at the start, so that neither the units of
-// the parameters nor the scale of the cost matters (SLSQP stops at once on the raw calibration cost). A cost that is
-// not finite becomes a finite one above every cost seen. Budget, clock and interruption are the driver's.
+// They see unit coordinates u in [-1, 1]^m and the cost divided by its value where they start, so that neither the units
+// of the parameters nor the scale of the cost matters (SLSQP stops at once on the raw calibration cost). A point whose
+// cost or gradient is not finite gets a finite cost above every cost seen. Budget, clock and interruption are the driver's.
 //
-// A local method that stops is started again from the best point while that gains more than restart_gain of the cost,
-// at most `restarts` times. NLopt's tolerances do not show optimality, so the end counts as converged only when the
-// projected gradient is at most gradient_tolerance of the cost at the start, or where the problem has normal equations,
-// when a bounded Gauss-Newton step would gain at most gain_tolerance of the cost (one evaluation). Else it is stalled.
+// A local method that stops is started again from the best point, with the cost there as the new unit, while that gains
+// more than restart_gain of the cost and the projected gradient is above gradient_tolerance of the present cost, at most
+// `restarts` times. NLopt's tolerances do not show optimality: what may be said of the end is the driver's business.
 //
 // Random numbers: NLopt's generator is thread-local since 2.4 and is seeded here from the run's engine before it
 // starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and AGS
@@ -29,7 +28,6 @@ struct NloptOptions {
   double xtol = 1e-10;
   double ftol = 1e-14;
   double gradient_tolerance = 1e-8;
-  double gain_tolerance = 1e-8;
   double restart_gain = 1e-8;
   double step = 0;
   int population = 0;

@@ -21,8 +21,4 @@ double projected_gradient(const ConstVectorRef& u, const ConstVectorRef& g);
 // u with the coordinates that lie within `distance` of a bound put on it where -g points there.
 Vector put_on_bounds(const Vector& u, const ConstVectorRef& gradient, double distance);
 
-// What a perfect bounded Gauss-Newton step from u would still gain, as a part of the cost: 1 at a far point, about 0
-// at a minimum. Infinite where the cost is 0.
-double predicted_gain(const Vector& u, const NormalEquations& e);
-
 }  // namespace odobench

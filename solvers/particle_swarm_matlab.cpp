@@ -106,7 +106,7 @@ Outcome minimise_swarm_matlab(Run& run, const ParticleSwarmOptions& options) {
     if (history.size() <= window) continue;
     const double change = history[history.size() - 1 - window] - history.back();
     if (change < options.function_tolerance * std::abs(history.back()))
-      return {Termination::Stalled,
+      return {Termination::Settled,
               fmt::format("the best changed by {:.2g} < {:.2g} times the cost in {} iterations", change,
                           options.function_tolerance, options.stall_iterations)};
   }

@@ -87,12 +87,12 @@ Outcome minimise_swarm_modern(Run& run, const ParticleSwarmOptions& options) {
     const double low = s.best_costs.minCoeff();
     const double range = s.best_costs.maxCoeff() - low;
     if (range <= options.cost_tolerance * std::abs(low))
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("cost range of the personal bests {:.2g} <= {:.2g} times the cost", range,
                           options.cost_tolerance)};
     const double spread = (s.best.rowwise().maxCoeff() - s.best.rowwise().minCoeff()).maxCoeff();
     if (spread <= 1e-12)
-      return {Termination::Converged,
+      return {Termination::Settled,
               fmt::format("width of the personal bests {:.2g} <= 1e-12 of the box", spread)};
     move(s, links, c, run.random());
     run.batch_cost(map.to_box(s.x), costs);

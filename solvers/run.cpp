@@ -28,6 +28,8 @@ std::string to_string(Termination termination) {
       return "not_started";
     case Termination::Converged:
       return "converged";
+    case Termination::Settled:
+      return "settled";
     case Termination::Stalled:
       return "stalled";
     case Termination::IterationLimit:
@@ -122,6 +124,12 @@ double Run::accept(double cost, const Vector& parameters, const ConstVectorRef& 
   return cost;
 }
 
+bool Run::has_derivatives(double cost, bool finite) {
+  if (!std::isfinite(cost)) return false;  // counted already
+  if (!finite) ++non_finite_;
+  return finite;
+}
+
 double Run::cost(const ConstVectorRef& u) {
   if (stop()) return kInfinity;
   const Vector x = box_.to_parameters(u);
@@ -134,7 +142,8 @@ double Run::cost_and_gradient(const ConstVectorRef& u, VectorRef g) {
   const Vector x = box_.to_parameters(u);
   Vector full(x.size());
   const double cost = accept(problem_.cost_and_gradient(x, full), x, u);
-  if (std::isfinite(cost) && full.allFinite()) g = box_.gradient_to_unit(full);
+  if (!has_derivatives(cost, full.allFinite())) return kInfinity;
+  g = box_.gradient_to_unit(full);
   return cost;
 }
 
@@ -146,7 +155,8 @@ double Run::normal_equations(const ConstVectorRef& u, NormalEquations& out) {
   NormalEquations full;
   problem_.normal_equations(x, full);
   const double cost = accept(full.cost, x, u);
-  if (std::isfinite(cost) && full.jtr.allFinite() && full.jtj.allFinite()) out = box_.to_unit(full);
+  if (!has_derivatives(cost, full.jtr.allFinite() && full.jtj.allFinite())) return kInfinity;
+  out = box_.to_unit(full);
   return cost;
 }
 
@@ -158,7 +168,8 @@ double Run::residuals_and_jacobian(const ConstVectorRef& u, VectorRef r, MatrixR
   Matrix full(problem_.residual_count(), x.size());
   problem_.residuals_and_jacobian(x, r, full);
   const double cost = accept(r.squaredNorm(), x, u);
-  if (std::isfinite(cost) && full.allFinite()) j = box_.jacobian_to_unit(full);
+  if (!has_derivatives(cost, full.allFinite())) return kInfinity;
+  j = box_.jacobian_to_unit(full);
   return cost;
 }
 

@@ -17,8 +17,9 @@ namespace odobench {
 
 enum class Termination {
   NotStarted,
-  Converged,       // the method's own optimality test holds
-  Stalled,         // the method can make no further progress, optimality not shown
+  Converged,       // said by solve() alone: the test of solvers/verdict.hpp holds at the returned point
+  Settled,         // the method ended by its own tolerance, and no derivative can confirm or refute it
+  Stalled,         // no further progress, and optimality is not shown or is refuted
   IterationLimit,  // the method's own iteration or generation count is used up
   TargetReached,
   MaxEvaluations,
@@ -65,7 +66,8 @@ class Run {
   Random& random() { return random_; }
 
   // Evaluations. Once stop() holds they return +infinity (derivatives zero) without calling the model, so a budget
-  // is never exceeded. A non-finite cost is counted and handed to the method as +infinity.
+  // is never exceeded. A non-finite cost is counted and handed to the method as +infinity; so is a point whose
+  // derivatives are not finite (its cost still counts for the best).
   double cost(const ConstVectorRef& u);
   double cost_and_gradient(const ConstVectorRef& u, VectorRef g);
   double normal_equations(const ConstVectorRef& u, NormalEquations& out);  // out in unit coordinates
@@ -108,6 +110,7 @@ class Run {
 
  private:
   double accept(double cost, const Vector& parameters, const ConstVectorRef& u);
+  bool has_derivatives(double cost, bool finite);
   void consider(double cost, const Vector& parameters, const ConstVectorRef& u);
 
   Problem problem_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "solvers/registry.hpp"
 
 namespace odobench {
@@ -30,6 +32,26 @@ Outcome run_phase(const Solver& solver, Run& run) {
   return outcome;
 }
 
+// Tests the returned point and says what may be said of it. A method that ended by itself has converged where the test
+// holds, whatever it says; has stalled where the test shows something left to gain; else keeps its own word.
+void conclude(const Problem& problem, const Outcome& outcome, Result& result) {
+  const bool by_itself =
+      outcome.termination == Termination::Settled || outcome.termination == Termination::Stalled;
+  if (outcome.termination == Termination::Converged)
+    throw std::logic_error(
+        fmt::format("solver '{}' says converged, which only the driver may", result.solver));
+  if (!result.usable() || outcome.on_lattice || outcome.termination == Termination::Interrupted ||
+      outcome.termination == Termination::Failed)
+    return;
+  result.check = check_optimality(problem, result.x);
+  if (!result.check || !by_itself) return;
+  if (result.check->holds())
+    result.termination = Termination::Converged;
+  else if (result.check->refuted)
+    result.termination = Termination::Stalled;
+  result.message += "; " + result.check->text();
+}
+
 }  // namespace
 
 Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start,
@@ -53,7 +75,7 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
   Outcome outcome;
   if (run.dimension() == 0) {  // every parameter is held fixed: one evaluation is the whole answer
     run.cost(run.start());
-    outcome = {Termination::Converged, "every parameter is held fixed (lower == upper)"};
+    outcome = {Termination::Settled, "nothing to calibrate: every parameter is held fixed (lower == upper)"};
   } else {
     outcome = run_phase(*solver, run);
   }
@@ -63,7 +85,8 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
     run.restart_from_best(options.budget);
     const Outcome polish = run_phase(*polisher, run);
     outcome = {polish.termination,
-               fmt::format("{}; polished by {}: {}", outcome.message, options.polish.text(), polish.message)};
+               fmt::format("{}; polished by {}: {}", outcome.message, options.polish.text(), polish.message),
+               polish.on_lattice};
   }
   result.termination = outcome.termination;
   result.message = outcome.message;
@@ -79,6 +102,7 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
     result.termination = Termination::Failed;
     result.message = fmt::format("no finite cost in {} evaluations; {}", run.evaluations(), outcome.message);
   }
+  conclude(problem, outcome, result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solvers/solver.hpp"
+#include "solvers/verdict.hpp"
 
 namespace odobench {
 
@@ -29,6 +30,8 @@ struct Result {
   std::int64_t non_finite = 0;
   double seconds = 0;
   std::vector<TraceEntry> trace;
+  // Of the returned point; absent where the problem has no derivatives and after an interruption or a failure.
+  std::optional<OptimalityCheck> check;
 
   bool usable() const { return x.size() > 0; }
   std::string brief() const;  // "lm: 98.1187829 after 30 evaluations, 0.04 s, converged: ..."

@@ -12,10 +12,13 @@
 
 namespace odobench {
 
-// How the method itself ended. When run.stop() holds the driver's reason replaces it.
+// How the method itself ended: Settled by a tolerance of its own, Stalled without further progress, IterationLimit,
+// Failed. It never says Converged: solve() does, by its own test. When run.stop() holds the driver's reason replaces it.
 struct Outcome {
   Termination termination = Termination::NotStarted;
   std::string message;  // one sentence with both numbers: "projected gradient 3e-11 <= 1e-10"
+  // The answer is the best of admissible levels, about which derivatives say nothing.
+  bool on_lattice = false;
 };
 
 class Solver {

@@ -2,148 +2,85 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <stdexcept>
 
+#include "problems/classic/nist.hpp"
+#include "problems/classic/test_functions.hpp"
+
 namespace odobench {
-namespace {
 
-std::vector<ParameterInfo> box(int n, double start, double low, double high) {
-  std::vector<ParameterInfo> list;
-  for (int i = 1; i <= n; ++i) list.push_back({fmt::format("x{}", i), "1", start, low, high});
-  return list;
+DimensionRule DimensionRule::at_least(int n, int step) {
+  return {n, std::numeric_limits<int>::max(), step};
 }
 
-// Shared members of the models whose cost is a sum of squares given by Derived::residuals_and_jacobian.
-struct Base {
-  std::string label;
-  std::vector<ParameterInfo> list;
-  std::string name() const { return label; }
-  const std::vector<ParameterInfo>& parameters() const { return list; }
-  Eigen::Index dimension() const { return static_cast<Eigen::Index>(list.size()); }
-};
-
-struct WithOptimum : Base {
-  double known_optimum() const { return 0.0; }
-};
-
-// r = A (x - c): sphere, ellipsoid, corner.
-template <class B>
-struct LinearResiduals : B {
-  Matrix a;
-  Vector c;
-  double cost(const ConstVectorRef& x) const { return (a * (x - c)).squaredNorm(); }
-  Eigen::Index residual_count() const { return a.rows(); }
-  void residuals(const ConstVectorRef& x, VectorRef r) const { r = a * (x - c); }
-  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const {
-    r = a * (x - c);
-    j = a;
-  }
-};
-
-Matrix ellipsoid_matrix(int n) {
-  Matrix seed(n, n);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) seed(i, j) = std::sin(1.0 + 3.0 * i + 7.0 * j + i * j);
-  const Matrix q = Eigen::HouseholderQR<Matrix>(seed).householderQ();
-  Vector d(n);
-  for (int i = 0; i < n; ++i) d[i] = std::pow(10.0, 3.0 * i / (n - 1));
-  return d.asDiagonal() * q;
+bool DimensionRule::allows(int n) const {
+  return n >= least && n <= most && (n - least) % step == 0;
 }
 
-struct Rosenbrock : WithOptimum {
-  double cost(const ConstVectorRef& x) const {
-    Vector r(residual_count());
-    residuals(x, r);
-    return r.squaredNorm();
+std::string DimensionRule::text() const {
+  if (least == most) return fmt::format("{}", least);
+  const bool open = most == std::numeric_limits<int>::max();
+  if (step != 1) {
+    const std::string list = fmt::format("{}, {}, {}, ...", least, least + step, least + 2 * step);
+    return open ? list : fmt::format("{}, {}", list, most);
   }
-  Eigen::Index residual_count() const { return 2 * (dimension() - 1); }
-  void residuals(const ConstVectorRef& x, VectorRef r) const {
-    for (Eigen::Index i = 0; i + 1 < x.size(); ++i) {
-      r[2 * i] = 10.0 * (x[i + 1] - x[i] * x[i]);
-      r[2 * i + 1] = 1.0 - x[i];
-    }
-  }
-  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const {
-    residuals(x, r);
-    j.setZero();
-    for (Eigen::Index i = 0; i + 1 < x.size(); ++i) {
-      j(2 * i, i) = -20.0 * x[i];
-      j(2 * i, i + 1) = 10.0;
-      j(2 * i + 1, i) = -1.0;
-    }
-  }
-};
+  return open ? fmt::format(">= {}", least) : fmt::format("{}..{}", least, most);
+}
 
-struct Powell : WithOptimum {
-  double cost(const ConstVectorRef& x) const {
-    Vector r(4);
-    residuals(x, r);
-    return r.squaredNorm();
-  }
-  Eigen::Index residual_count() const { return 4; }
-  void residuals(const ConstVectorRef& x, VectorRef r) const {
-    r[0] = x[0] + 10.0 * x[1];
-    r[1] = std::sqrt(5.0) * (x[2] - x[3]);
-    r[2] = (x[1] - 2.0 * x[2]) * (x[1] - 2.0 * x[2]);
-    r[3] = std::sqrt(10.0) * (x[0] - x[3]) * (x[0] - x[3]);
-  }
-  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const {
-    residuals(x, r);
-    const double s = 2.0 * (x[1] - 2.0 * x[2]);
-    const double t = 2.0 * std::sqrt(10.0) * (x[0] - x[3]);
-    j << 1, 10, 0, 0, 0, 0, std::sqrt(5.0), -std::sqrt(5.0), 0, s, -2 * s, 0, t, 0, 0, -t;
-  }
-};
-
-struct Rastrigin : WithOptimum {
-  double cost(const ConstVectorRef& x) const {
-    Vector g(x.size());
-    return cost_and_gradient(x, g);
-  }
-  double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const {
-    constexpr double kTau = 2.0 * std::numbers::pi;
-    double sum = 0;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      sum += x[i] * x[i] - 10.0 * std::cos(kTau * x[i]) + 10.0;
-      g[i] = 2.0 * x[i] + 10.0 * kTau * std::sin(kTau * x[i]);
-    }
-    return sum;
-  }
-};
-
-struct Step : WithOptimum {
-  double cost(const ConstVectorRef& x) const { return (4.0 * x.array()).abs().floor().sum(); }
-};
-
-}  // namespace
+const std::vector<ClassicEntry>& classic_catalogue() {
+  static const std::vector<ClassicEntry> catalogue = [] {
+    std::vector<ClassicEntry> all;
+    for (const auto& family : {test_function_entries(), nist_entries()})
+      all.insert(all.end(), family.begin(), family.end());
+    return all;
+  }();
+  return catalogue;
+}
 
 const std::vector<std::string>& classic_problem_names() {
-  static const std::vector<std::string> names{"sphere", "ellipsoid", "corner", "rosenbrock",
-                                              "powell", "rastrigin", "step"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const ClassicEntry& entry : classic_catalogue()) list.push_back(entry.name);
+    return list;
+  }();
   return names;
 }
 
-Problem make_classic_problem(const std::string& name, int n) {
-  if (n < 2 || (name == "powell" && n != 4))
+const ClassicEntry* find_classic_problem(const std::string& name) {
+  for (const ClassicEntry& entry : classic_catalogue())
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+Problem make_classic_problem(const std::string& name, int dimension) {
+  const ClassicEntry* entry = find_classic_problem(name);
+  if (entry == nullptr) throw std::invalid_argument(fmt::format("unknown problem '{}'", name));
+  const int n = dimension == 0 ? entry->dimension : dimension;
+  if (!entry->dimensions.allows(n))
     throw std::invalid_argument(
-        fmt::format("problem '{}': dimension {}; expected {}", name, n, name == "powell" ? "4" : ">= 2"));
-  if (name == "sphere")
-    return Problem(LinearResiduals<WithOptimum>{
-        {{name, box(n, -0.5, -1, 1)}}, Matrix::Identity(n, n), Vector::Constant(n, 1.0 / 3)});
-  if (name == "ellipsoid")
-    return Problem(LinearResiduals<WithOptimum>{
-        {{name, box(n, -0.5, -1, 1)}}, ellipsoid_matrix(n), Vector::LinSpaced(n, -0.4, 0.6)});
-  if (name == "corner")
-    return Problem(LinearResiduals<Base>{
-        {name, box(n, 0.0, -1, 1)}, ellipsoid_matrix(n), Vector::LinSpaced(n, -3.0, 2.0)});
-  if (name == "rosenbrock") return Problem(Rosenbrock{{{name, box(n, -1.2, -2, 2)}}});
-  if (name == "powell") return Problem(Powell{{{name, box(n, 1.0, -4, 5)}}});
-  if (name == "rastrigin") return Problem(Rastrigin{{{name, box(n, 2.2, -5.12, 4.12)}}});
-  if (name == "step") return Problem(Step{{{name, box(n, 0.9, -1, 1)}}});
-  throw std::invalid_argument(fmt::format("unknown problem '{}'", name));
+        fmt::format("problem '{}': dimension {}; expected {}", name, n, entry->dimensions.text()));
+  if (entry->family == "nist") return make_nist_problem(name);
+  return make_test_function(name, n);
+}
+
+double log_relative_error(const ConstVectorRef& x, const std::vector<Vector>& minimisers) {
+  if (minimisers.empty()) throw std::invalid_argument("log relative error: no known minimiser");
+  double best = 0;
+  for (const Vector& c : minimisers) {
+    if (c.size() != x.size())
+      throw std::invalid_argument(
+          fmt::format("log relative error: {} parameters, expected {}", x.size(), c.size()));
+    double worst = kMostDigits;
+    for (Eigen::Index i = 0; i < c.size(); ++i) {
+      const double error = c[i] == 0 ? std::abs(x[i]) : std::abs((x[i] - c[i]) / c[i]);
+      worst = std::isfinite(error) ? std::min(worst, -std::log10(error)) : 0;
+    }
+    best = std::max(best, worst);
+  }
+  return best;
 }
 
 }  // namespace odobench

@@ -1,0 +1,15 @@
+// How much of a least-squares cost rounding alone explains.
+#pragma once
+
+#include "problems/problem.hpp"
+#include "solvers/box.hpp"
+
+namespace odobench {
+
+// The larger of two parts of the cost J(u) = r'r: what the problem itself states (Problem::rounding_floor), and the
+// square of what the residuals change by when every parameter moves by two units in its last place. `length`: |J_i| / |r|
+// in unit coordinates.
+double rounding_part_of_cost(const Problem& problem, const Box& box, const Vector& u, const Vector& length,
+                             double cost);
+
+}  // namespace odobench
