@@ -98,6 +98,7 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
       ->add_option("--tracks", a.evaluate.tracks,
                    "write the paths that the parameters give as CSV, for plots")
       ->type_name("FILE.CSV");
+  add_kernel(*evaluate, a.evaluate.kernel, kLastBits);
   evaluate->add_option("--out", a.evaluate.out, "keep records, tables and tracks in this folder")
       ->type_name("DIR");
   evaluate->add_flag("--overwrite", a.evaluate.overwrite, "replace what --tracks or --out find there");
@@ -292,6 +293,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
   add_count(*plan, "--replicas", a.plan.replicas, 2, 10000,
             "simulations per drive that its noise is taken from [32]");
   add_noise_options(*plan, a.plan.seed, a.plan.threads);
+  add_kernel(*plan, a.plan.kernel, kLastBits);
   add_format(*plan, a.plan.format);
 
   CLI::App* verify =
@@ -305,6 +307,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
       ->allow_extra_args(false);
   add_count(*verify, "--repeat", a.verify.repeat, 1, 10000, "times that all drives are driven [10]");
   add_noise_options(*verify, a.verify.seed, a.verify.threads);
+  add_kernel(*verify, a.verify.kernel, kNamedOnly);
   add_format(*verify, a.verify.format);
 
   return {{simulate, [&a] { return simulate_command(a.simulate); }},

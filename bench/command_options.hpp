@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/entropy_window.hpp"
+#include "problems/instruction_set.hpp"
 #include "solvers/run.hpp"
 
 namespace odobench {
@@ -21,7 +22,8 @@ struct RunOptions {
   int dimension = 0;  // of a classic problem; 0: its usual one
   int repeat = 1;
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: one per core
+  int threads = 0;                       // 0: one per core
+  std::optional<InstructionSet> kernel;  // none: kernel_in_force() knows
   Budget budget{kDefaultMaxEvaluations};
   std::string start = "nominal";
   std::string polish;  // solver, as typed; empty: none
@@ -49,6 +51,7 @@ struct FilterOptions {
   EntropyConstants constants;              // dt and step_rotation apart
   std::optional<double> step_rotation;     // deg/s^2
   bool gap = false;                        // compare with exact and relaxed
+  std::optional<InstructionSet> kernel;
   std::uint64_t seed = 1;
   Budget budget{kDefaultMaxEvaluations};  // per window, of a solver of the registry
   bool overwrite = false;
@@ -63,6 +66,7 @@ struct WindowsOptions {
   int repeat = 1;
   std::uint64_t seed = 1;
   int threads = 0;  // 0: one per core
+  std::optional<InstructionSet> kernel;
   Budget budget{kDefaultMaxEvaluations};
   std::string out;  // folder for records and tables; empty: none
   bool overwrite = false;
@@ -74,7 +78,8 @@ struct EvaluateOptions {
   std::string data;
   std::vector<std::string> parameters;  // files or names, as typed; empty: nominal
   std::string tracks;                   // CSV file for the paths; empty: none
-  std::string out;                      // folder for records, tables and tracks; empty: none
+  std::optional<InstructionSet> kernel;
+  std::string out;  // folder for records, tables and tracks; empty: none
   bool overwrite = false;
   std::string format = "console";
 };
@@ -121,6 +126,7 @@ struct PlanOptions {
   int replicas = 32;                    // fewer miss the rare late messages that decide
   std::uint64_t seed = 1;
   int threads = 0;
+  std::optional<InstructionSet> kernel;
   std::string format = "console";
 };
 
@@ -130,6 +136,7 @@ struct VerifyOptions {
   int repeat = 10;
   std::uint64_t seed = 1;
   int threads = 0;
+  std::optional<InstructionSet> kernel;
   std::string format = "console";
 };
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "bench/git_revision.hpp"
+#include "bench/option_values.hpp"
 #include "solvers/library_versions.hpp"
 
 namespace odobench {
@@ -49,9 +50,9 @@ std::string command_line() {
 
 }  // namespace
 
-RunContext run_context(int threads) {
-  return {cpu_model(),      compiler(), ODOBENCH_BUILD_TYPE, kGitRevision,
-          ODOBENCH_VERSION, threads,    command_line(),      library_versions()};
+RunContext run_context(int threads, InstructionSet kernel) {
+  return {cpu_model(), compiler(),     ODOBENCH_BUILD_TYPE, kGitRevision,     ODOBENCH_VERSION,
+          threads,     command_line(), library_versions(),  to_string(kernel)};
 }
 
 std::string utc_now() {
@@ -64,8 +65,8 @@ std::string utc_now() {
 }
 
 std::string version_line() {
-  return fmt::format("bench {} (revision {}, {}, {})", ODOBENCH_VERSION, kGitRevision, ODOBENCH_BUILD_TYPE,
-                     compiler());
+  return fmt::format("bench {} (revision {}, {}, {}, kernel {})", ODOBENCH_VERSION, kGitRevision,
+                     ODOBENCH_BUILD_TYPE, compiler(), to_string(kernel_in_force()));
 }
 
 }  // namespace odobench

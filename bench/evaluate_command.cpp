@@ -165,9 +165,10 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   const Format format = parse_format(options.format);
   refuse_existing("--tracks", options.tracks, options.overwrite);
   if (!options.out.empty()) require_no_records(options.out, options.overwrite);
-  const LoadedProblem loaded = load_calibration(options.data);
+  const InstructionSet kernel = kernel_in_force(options.kernel);
+  const LoadedProblem loaded = load_calibration(options.data, kernel);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);
-  const RunContext context = run_context(1);
+  const RunContext context = run_context(1, kernel);
   std::vector<RunRecord> records;
   for (const ParameterSet& set : sets) {
     records.push_back(evaluation_record(loaded, set.label, set.values, context));

@@ -105,6 +105,7 @@ void add_filter_options(CLI::App& app, FilterOptions& o) {
   add_meanings(app, o);
   add_value(app, "--seed", "N", "of a solver that draws random numbers [1]",
             [&o](const std::string& text) { o.seed = seed_number("--seed", text); });
+  add_kernel(app, o.kernel, kSpeedOnly);
   add_budget(app, o.budget);
   app.add_flag("--overwrite", o.overwrite, "replace files that are there");
   app.add_option("--format", o.format, "of the tables on standard output [console]")
@@ -133,6 +134,7 @@ void add_windows_options(CLI::App& app, WindowsOptions& o) {
             [&o](const std::string& text) {
               o.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
             });
+  add_kernel(app, o.kernel, kNamedOnly);
   add_budget(app, o.budget);
   app.add_option("--out", o.out, "folder for runs.jsonl (a line per run, as it ends) and tables.*")
       ->type_name("DIR");

@@ -92,11 +92,12 @@ class InputRows {
 // Everything that happens to a window.
 class FilterRun {
  public:
-  FilterRun(const FilterOptions& options, const FilterSetup& setup, const FilterRunReader& data,
-            const std::atomic<bool>& interrupt)
+  FilterRun(const FilterOptions& options, const FilterSetup& setup, InstructionSet kernel,
+            const FilterRunReader& data, const std::atomic<bool>& interrupt)
       : setup_(setup),
         profile_(setup.constants),
-        method_(make_filter_method(options.solver, profile_, options.budget, options.seed, interrupt)),
+        method_(
+            make_filter_method(options.solver, profile_, options.budget, options.seed, kernel, interrupt)),
         filter_(profile_, method_.search.get()),
         converter_(setup),
         noise_(setup),
@@ -109,7 +110,8 @@ class FilterRun {
     if (!options.out.empty())
       file_.emplace(options.out, setup.constants.samples, data.has_time(), setup.rotation_sign);
     if (!options.gap) return;
-    exact_search_ = ternary_exact(profile_.blocks(), [&interrupt] { return interrupt.load(); });
+    exact_search_ = ternary_exact(
+        profile_.blocks(), [&interrupt] { return interrupt.load(); }, kernel);
     relaxed_search_ = box_relaxation(profile_.blocks());
     exact_.emplace(profile_, exact_search_.get());
     relaxed_.emplace(profile_, relaxed_search_.get());
@@ -211,12 +213,13 @@ std::string checksum(const std::string& data) {
 
 ExitCode filter_command(const FilterOptions& options) {
   const Format format = parse_format(options.format);
+  const InstructionSet kernel = kernel_in_force(options.kernel);
   FilterSetup setup = make_filter_setup(options);
   refuse_existing("--out", options.out, options.overwrite);
   if (!options.records.empty())
     refuse_existing("--records", (fs::path(options.records) / "runs.jsonl").string(), options.overwrite);
   // Before the data are read, which may take long or come but once.
-  make_filter_method(options.solver, ProfileForm(setup.constants), options.budget, options.seed,
+  make_filter_method(options.solver, ProfileForm(setup.constants), options.budget, options.seed, kernel,
                      InterruptGuard::flag());
   const InterruptGuard guard;
   const std::string begin_utc = utc_now();
@@ -228,7 +231,7 @@ ExitCode filter_command(const FilterOptions& options) {
         "--theta={}: {} names its rotation column with a unit; the option is for the thesis' layout",
         *options.theta, options.data));
   setup.constants.dt = rows.data().dt();
-  FilterRun run(options, setup, rows.data(), InterruptGuard::flag());
+  FilterRun run(options, setup, kernel, rows.data(), InterruptGuard::flag());
   {
     CountLine progress(!options.quiet, "windows");
     FilterInput input;
@@ -243,7 +246,7 @@ ExitCode filter_command(const FilterOptions& options) {
   record.termination = to_string(interrupted ? Termination::Interrupted : Termination::Converged);
   record.message = interrupted ? "interrupted, the windows so far" : "all windows of the run";
   record.notes = {setup_note(options, setup)};
-  record.context = run_context(1);
+  record.context = run_context(1, kernel);
   record.time_utc = begin_utc;
 
   std::vector<Table> tables = filter_tables({record});

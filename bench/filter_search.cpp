@@ -53,7 +53,8 @@ SearchResult RegistrySearch::minimise(std::span<const double> g, std::span<doubl
 }
 
 FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, const std::atomic<bool>& interrupt) {
+                                std::uint64_t seed, InstructionSet kernel,
+                                const std::atomic<bool>& interrupt) {
   const std::vector<SolverSpec> list = parse_solver_list(text);
   if (list.size() != 1) throw std::invalid_argument(fmt::format("--solver={}: expected one solver", text));
   FilterMethod method;
@@ -62,9 +63,10 @@ FilterMethod make_filter_method(const std::string& text, const ProfileForm& prof
   if (method.spec.name == "zero") {
     if (!plain) throw std::invalid_argument("--solver=zero: takes no options");
   } else if (plain && method.spec.name == "coordinate") {
-    method.search = ternary_greedy(profile.blocks());
+    method.search = ternary_greedy(profile.blocks(), kernel);
   } else if (plain && method.spec.name == "exact") {
-    method.search = ternary_exact(profile.blocks(), [&interrupt] { return interrupt.load(); });
+    method.search = ternary_exact(
+        profile.blocks(), [&interrupt] { return interrupt.load(); }, kernel);
   } else if (plain && method.spec.name == "relaxed") {
     method.search = box_relaxation(profile.blocks());
   } else {

@@ -8,6 +8,7 @@
 
 #include "problems/block_quadratic.hpp"
 #include "problems/entropy/profile_form.hpp"
+#include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
 
 namespace odobench {
@@ -42,6 +43,7 @@ struct FilterMethod {
 // `text` as typed: coordinate, exact, relaxed, zero, or a solver of the registry. `profile` outlives the result. Throws
 // std::invalid_argument on what is none of them or several.
 FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, const std::atomic<bool>& interrupt);
+                                std::uint64_t seed, InstructionSet kernel,
+                                const std::atomic<bool>& interrupt);
 
 }  // namespace odobench

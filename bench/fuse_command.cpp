@@ -257,7 +257,8 @@ ExitCode fuse_command(const FuseOptions& options) {
   const Format format = parse_format(options.format);
   const std::vector<FilterChoice> filters = parse_filters(options.filters);
   const SensorsFile sensors = read_sensors(options.sensors);
-  const LoadedProblem loaded = load_calibration(options.data);
+  const InstructionSet kernel = kernel_in_force(options.kernel);
+  const LoadedProblem loaded = load_calibration(options.data, kernel);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, options.parameters);
   if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   const std::uint64_t seed = options.seed.value_or(sensors.seed);
@@ -265,7 +266,7 @@ ExitCode fuse_command(const FuseOptions& options) {
   const std::vector<std::vector<SensorStream>> streams =
       all_streams(sensors, recordings, seed, options.threads);
   const Table about = sensor_table(sensors, seed, loaded.dataset_name());
-  const RunContext context = run_context(thread_count(options.threads));
+  const RunContext context = run_context(thread_count(options.threads), kernel);
   std::vector<RunRecord> records;
   std::vector<FusionRow> rows;
   TrackSet tracks = reference_tracks(kFusionProblem, loaded);

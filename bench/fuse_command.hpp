@@ -22,7 +22,8 @@ struct FuseOptions {
   std::string sensors;                  // file
   std::optional<std::uint64_t> seed;    // instead of the file's
   int threads = 0;                      // 0: one per core
-  std::string out;                      // folder for records, tables and tracks; empty: none
+  std::optional<InstructionSet> kernel;
+  std::string out;  // folder for records, tables and tracks; empty: none
   bool overwrite = false;
   std::string format = "console";
 };

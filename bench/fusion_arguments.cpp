@@ -1,6 +1,7 @@
 #include "bench/fusion_arguments.hpp"
 
 #include "bench/number_text.hpp"
+#include "bench/run_arguments.hpp"
 #include "problems/fusion/linear_system.hpp"
 
 namespace odobench {
@@ -57,6 +58,7 @@ Verb add_fuse(CLI::App& app, FuseOptions& o) {
           },
           "threads; results do not depend on them [one per core]")
       ->type_name("N");
+  add_kernel(*verb, o.kernel, kNamedOnly);
   verb->add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
   verb->add_flag("--overwrite", o.overwrite, "replace runs that the folder holds");
   add_format(*verb, o.format);
@@ -88,6 +90,7 @@ Verb add_tune(CLI::App& app, TuneOptions& o) {
           "--seed", [&o](const std::string& text) { o.seed = seed_number("--seed", text); },
           "of the synthetic sensors and the solvers [that of the file]")
       ->type_name("N");
+  add_kernel(*verb, o.kernel, kNamedOnly);
   verb->add_option("--out", o.out, "write the sensors file with the best sigmas")->type_name("FILE");
   verb->add_flag("--overwrite", o.overwrite, "replace a file of --out that is there");
   add_format(*verb, o.format);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
@@ -34,6 +35,13 @@ void refuse_existing(const char* option, const std::string& path, bool overwrite
 
 int thread_count(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+InstructionSet kernel_in_force(std::optional<InstructionSet> asked) {
+  if (asked) return *asked;
+  const char* const variable = std::getenv("ODOBENCH_KERNEL");
+  const std::string name = variable == nullptr ? "" : variable;
+  return name.empty() ? widest_instruction_set() : instruction_set("ODOBENCH_KERNEL", name);
 }
 
 }  // namespace odobench

@@ -89,7 +89,7 @@ Selection select(const simulate::RecordingScenario& s, const PlanOptions& o) {
 }
 
 std::vector<DriveInformation> informations(const simulate::RecordingScenario& s, const Selection& selection,
-                                           const PlanOptions& o) {
+                                           const PlanOptions& o, InstructionSet kernel) {
   const std::vector<ParameterInfo> parameters = robot_parameters(s.robot);
   const Vector truth = Eigen::Map<const Vector>(s.truth.parameters.data(), kCalibrationParameters);
   const std::uint64_t seed = derive_seed(o.seed, {"plan", s.name});
@@ -100,7 +100,7 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
     const simulate::Drive& drive = selection.drives[i];
     if (s.exact) {
       list[i] = ideal_information(drive.name, parameters, simulate::exact_recording(s, drive), truth,
-                                  s.capture.position_noise);
+                                  s.capture.position_noise, kernel);
       return;
     }
     std::vector<Recording> replicas;
@@ -108,7 +108,7 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
       replicas.push_back(simulate::simulate_drive(s, drive, k, seed).recording);
       progress.add_one();
     }
-    list[i] = drive_information(drive.name, parameters, replicas, truth);
+    list[i] = drive_information(drive.name, parameters, replicas, truth, kernel);
   });
   return list;
 }
@@ -225,6 +225,7 @@ Table proposals(const std::vector<DriveInformation>& drives, const Selection& se
 
 ExitCode plan_command(const PlanOptions& o) {
   const Format format = parse_format(o.format);
+  const InstructionSet kernel = kernel_in_force(o.kernel);
   const simulate::RecordingScenario scenario = load_recording_scenario(o.robot);
   const Selection selection = select(scenario, o);
   simulate::RecordingScenario checked = scenario;
@@ -232,7 +233,7 @@ ExitCode plan_command(const PlanOptions& o) {
   checked.slip.gains.clear();
   simulate::validate(checked, "--drives");
   const std::vector<ParameterInfo> parameters = robot_parameters(scenario.robot);
-  const std::vector<DriveInformation> drives = informations(scenario, selection, o);
+  const std::vector<DriveInformation> drives = informations(scenario, selection, o, kernel);
   const PlanAnalysis analysis = analyse_drives(drives, selection.counts, parameters, o.wanted);
   std::vector<Table> tables = {parameter_table(analysis, parameters, o.wanted),
                                direction_table(analysis, parameters)};

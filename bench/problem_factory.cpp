@@ -33,7 +33,7 @@ std::vector<std::string> problem_names() {
   return names;
 }
 
-LoadedProblem load_calibration(const std::string& data) {
+LoadedProblem load_calibration(const std::string& data, InstructionSet kernel) {
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
   Dataset dataset = load_dataset(path);
   if (dataset.robot.kinematics != "4wis4wid")
@@ -42,7 +42,7 @@ LoadedProblem load_calibration(const std::string& data) {
   std::shared_ptr<const CalibrationProblem> model;
   try {
     model = std::make_shared<const CalibrationProblem>(robot_parameters(dataset.robot),
-                                                       std::move(dataset.recordings));
+                                                       std::move(dataset.recordings), kernel);
   } catch (const std::invalid_argument& error) {  // what is wrong with the set is no usage error
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }
@@ -50,11 +50,12 @@ LoadedProblem load_calibration(const std::string& data) {
   return {Problem(model), model, std::move(dataset), path.string(), sha256_of_file(path)};
 }
 
-LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data) {
+LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data,
+                           InstructionSet kernel) {
   if (name == "calibration") {
     if (dimension != 0)
       throw std::invalid_argument("--dimension: the calibration problem has the dimension of its robot");
-    return load_calibration(data);
+    return load_calibration(data, kernel);
   }
   const std::vector<std::string> names = problem_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) {

@@ -25,12 +25,13 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot);
 
 // `data`: path of set.json, "" for the demo set. Throws DataError on a bad set or one of another kind of
 // robot.
-LoadedProblem load_calibration(const std::string& data);
+LoadedProblem load_calibration(const std::string& data, InstructionSet kernel);
 
 // `name`: "calibration" or a classic one, with `dimension` (0: its usual one). Throws std::invalid_argument
 // on an unknown name (suggests the nearest), a dimension or data set the problem does not take; DataError as
 // above.
-LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data);
+LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data,
+                           InstructionSet kernel);
 
 // Every name make_problem takes.
 std::vector<std::string> problem_names();

@@ -15,6 +15,15 @@ CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type,
   return app.add_option_function<std::string>(name, set, help)->type_name(type);
 }
 
+void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark) {
+  add_value(
+      app, "--kernel", "auto|avx512|avx2|baseline",
+      fmt::format("vector instructions of the cost evaluations; {} [$ODOBENCH_KERNEL, else auto: the widest "
+                  "of this processor]",
+                  remark),
+      [&kernel](const std::string& text) { kernel = instruction_set("--kernel", text); });
+}
+
 void add_budget(CLI::App& app, Budget& budget) {
   add_value(app, "--max-evals", "N",
             fmt::format("evaluations (costs and derivatives) of a run at most; 'none' lifts the limit [{}]",
@@ -53,6 +62,7 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
             [&options](const std::string& text) {
               options.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
             });
+  add_kernel(app, options.kernel, kLastBits);
   add_budget(app, options.budget);
   add_value(app, "--start", "nominal|random",
             "where runs begin; random starts are shared by all solvers [nominal]",

@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "bench/command_options.hpp"
@@ -12,6 +13,13 @@ namespace odobench {
 // An option whose value `set` parses: CLI11's own messages do not say what was expected.
 CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type, const std::string& help,
                        const std::function<void(const std::string&)>& set);
+// Remarks for add_kernel.
+inline constexpr const char* kLastBits = "the last bits of a calibration depend on it";
+inline constexpr const char* kSpeedOnly = "it decides the speed of the searches, never what they find";
+inline constexpr const char* kNamedOnly = "no result of this verb depends on it";
+
+// --kernel. `remark`: what the verb's results have to do with it.
+void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark);
 // --max-evals, --time-limit, --target.
 void add_budget(CLI::App& app, Budget& budget);
 

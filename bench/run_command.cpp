@@ -131,7 +131,8 @@ ExitCode run_command(const RunOptions& options) {
   const Format format = parse_format(options.format);
   std::vector<std::string> notes;
   CellPlan plan = make_plan(options, notes);
-  const LoadedProblem loaded = make_problem(options.problem, options.dimension, options.data);
+  const InstructionSet kernel = kernel_in_force(options.kernel);
+  const LoadedProblem loaded = make_problem(options.problem, options.dimension, options.data, kernel);
   plan.problem = loaded.problem.name();
   plan.dataset = loaded.dataset_name();
   const std::vector<RunCell> cells = plan_cells(plan, notes);
@@ -139,7 +140,7 @@ ExitCode run_command(const RunOptions& options) {
   for (const RunCell& cell : cells) labels.push_back(cell.label());
 
   const int threads = thread_count(options.threads);
-  const RunContext context = run_context(threads);
+  const RunContext context = run_context(threads, kernel);
   std::unique_ptr<RecordFile> file;
   if (!options.out.empty()) {
     file = std::make_unique<RecordFile>(options.out, options.overwrite);

@@ -159,7 +159,7 @@ ExitCode tune_command(const TuneOptions& options) {
   refuse_existing("--out", options.out, options.overwrite);
   SensorsFile sensors = read_sensors(options.sensors);
   sensors.options.filter.kind = filter.kind;
-  const LoadedProblem loaded = load_calibration(options.data);
+  const LoadedProblem loaded = load_calibration(options.data, kernel_in_force(options.kernel));
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, {options.parameters});
   if (sets.size() != 1)
     throw std::invalid_argument(

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/exit_code.hpp"
+#include "problems/instruction_set.hpp"
 
 namespace odobench {
 
@@ -20,6 +21,7 @@ struct TuneOptions {
   std::string objective = "likelihood";
   std::int64_t max_evaluations = 200;
   std::optional<std::uint64_t> seed;
+  std::optional<InstructionSet> kernel;
   std::string out;  // sensors file to write; empty: none
   bool overwrite = false;
   std::string format = "console";

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bench/evaluate_command.hpp"
+#include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
@@ -50,7 +51,7 @@ std::array<double, 2> arrival_of(const simulate::SimulatedDrive& d, const simula
 }
 
 Outcome drive_once(const simulate::RecordingScenario& s, const Vector& believed, std::uint64_t seed,
-                   int threads) {
+                   int threads, InstructionSet kernel) {
   simulate::SimulatedSet set = simulate::simulate_set(s, seed, threads);
   Outcome outcome;
   for (std::size_t t = 0; t < s.drives.size(); ++t) {
@@ -62,7 +63,7 @@ Outcome drive_once(const simulate::RecordingScenario& s, const Vector& believed,
     }
     outcome.arrival.push_back(mean);
   }
-  const CalibrationProblem problem(robot_parameters(s.robot), std::move(set.dataset.recordings));
+  const CalibrationProblem problem(robot_parameters(s.robot), std::move(set.dataset.recordings), kernel);
   std::vector<RecordingError> errors;
   for (const MaxErrors& e : problem.max_errors(believed))
     errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
@@ -201,6 +202,7 @@ Table arrival_table(const TableMaker& maker, const simulate::RecordingScenario& 
 
 ExitCode verify_command(const VerifyOptions& o) {
   const Format format = parse_format(o.format);
+  const InstructionSet kernel = kernel_in_force(o.kernel);
   const simulate::RecordingScenario scenario = load_recording_scenario(o.scenario);
   if (!scenario.control.closed_loop)
     throw std::invalid_argument(fmt::format(
@@ -220,7 +222,7 @@ ExitCode verify_command(const VerifyOptions& o) {
       for (int k = 1; k <= o.repeat; ++k) {
         outcomes[i].push_back(drive_once(scenarios[i], sets[i].values,
                                          derive_seed(o.seed, {"verify", scenario.name, std::to_string(k)}),
-                                         o.threads));
+                                         o.threads, kernel));
         progress.add_one();
       }
   }

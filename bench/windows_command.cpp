@@ -199,7 +199,7 @@ ExitCode windows_command(const WindowsOptions& options) {
   const std::string stem = std::filesystem::path(options.file).stem().string();
   const std::string sha256 = sha256_of_file(options.file);
   const int threads = thread_count(options.threads);
-  const RunContext context = run_context(threads);
+  const RunContext context = run_context(threads, kernel_in_force(options.kernel));
   const std::size_t per_window = plan_cells(plan, notes).size();
   std::unique_ptr<RecordFile> file;
   if (!options.out.empty()) file = std::make_unique<RecordFile>(options.out, options.overwrite);

@@ -17,7 +17,7 @@ std::string joined(const std::set<std::string>& values) {
 }
 
 Table setup_table(const std::vector<RunRecord>& records) {
-  std::set<std::string> sets, commands, programs, compilers, machines, libraries, threads, seeds;
+  std::set<std::string> sets, commands, programs, compilers, machines, libraries, kernels, threads, seeds;
   std::string first, last;
   for (const RunRecord& r : records) {
     const RunContext& c = r.context;
@@ -29,6 +29,7 @@ Table setup_table(const std::vector<RunRecord>& records) {
     compilers.insert(fmt::format("{}, {}", c.compiler, c.build_type));
     machines.insert(c.cpu);
     libraries.insert(c.libraries);
+    kernels.insert(c.kernel);
     threads.insert(std::to_string(c.threads));
     if (r.kind == "run" || r.base_seed != 0) seeds.insert(std::to_string(r.base_seed));
     if (!r.time_utc.empty()) {
@@ -47,6 +48,7 @@ Table setup_table(const std::vector<RunRecord>& records) {
   add("compiler", joined(compilers));
   add("libraries", joined(libraries));
   add("processor", joined(machines));
+  add("kernel", joined(kernels));
   add("threads", joined(threads));
   add("base seed", joined(seeds));
   add("made", first == last ? first : first + " .. " + last);

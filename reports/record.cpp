@@ -84,7 +84,8 @@ json to_json(const RunContext& c) {
           {"version", c.version},
           {"threads", c.threads},
           {"command", c.command},
-          {"libraries", c.libraries}};
+          {"libraries", c.libraries},
+          {"kernel", c.kernel}};
 }
 
 RunContext context_from(const JsonView& view) {
@@ -97,6 +98,7 @@ RunContext context_from(const JsonView& view) {
   c.threads = view.at("threads").small_integer();
   if (const auto command = view.find("command")) c.command = command->string();
   if (const auto libraries = view.find("libraries")) c.libraries = libraries->string();
+  if (const auto kernel = view.find("kernel")) c.kernel = kernel->string();
   return c;
 }
 

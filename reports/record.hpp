@@ -56,6 +56,7 @@ struct RunContext {
   int threads = 1;
   std::string command;    // the command line, "" when it is not known
   std::string libraries;  // versions of the solvers' libraries
+  std::string kernel;     // of the cost evaluations: "avx512", "avx2", "baseline"; "" in older records
 };
 
 struct RunRecord {

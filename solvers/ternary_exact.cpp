@@ -162,8 +162,8 @@ class TableBlock {
 class TernaryExact final : public BlockSearch {
  public:
   TernaryExact(const std::vector<QuadraticBlock>& blocks, int largest_table, std::function<bool()> stop,
-               const ternary::Kernel& kernel)
-      : stop_(std::move(stop)), kernel_(kernel) {
+               InstructionSet kernel)
+      : stop_(std::move(stop)), kernel_(ternary::select(kernel)) {
     check_blocks(blocks);
     for (const QuadraticBlock& block : blocks) {
       Part part;
@@ -219,13 +219,13 @@ class TernaryExact final : public BlockSearch {
 }  // namespace
 
 std::unique_ptr<BlockSearch> ternary_exact(const std::vector<QuadraticBlock>& blocks,
-                                           std::function<bool()> stop, const ternary::Kernel& kernel) {
+                                           std::function<bool()> stop, InstructionSet kernel) {
   return std::make_unique<TernaryExact>(blocks, kLargestTable, std::move(stop), kernel);
 }
 
 std::unique_ptr<BlockSearch> ternary_branch_and_bound(const std::vector<QuadraticBlock>& blocks,
                                                       std::function<bool()> stop) {
-  return std::make_unique<TernaryExact>(blocks, 0, std::move(stop), ternary::available().front());
+  return std::make_unique<TernaryExact>(blocks, 0, std::move(stop), InstructionSet::Baseline);
 }
 
 }  // namespace odobench

@@ -8,7 +8,8 @@ namespace {
 
 class TernaryGreedy final : public BlockSearch {
  public:
-  TernaryGreedy(const std::vector<QuadraticBlock>& blocks, const ternary::Kernel& kernel) : kernel_(kernel) {
+  TernaryGreedy(const std::vector<QuadraticBlock>& blocks, InstructionSet kernel)
+      : kernel_(ternary::select(kernel)) {
     check_blocks(blocks);
     for (const QuadraticBlock& block : blocks) {
       Data data;
@@ -69,7 +70,7 @@ class TernaryGreedy final : public BlockSearch {
 }  // namespace
 
 std::unique_ptr<BlockSearch> ternary_greedy(const std::vector<QuadraticBlock>& blocks,
-                                            const ternary::Kernel& kernel) {
+                                            InstructionSet kernel) {
   return std::make_unique<TernaryGreedy>(blocks, kernel);
 }
 

@@ -2,7 +2,9 @@
 // operations in the same order on each element: the results are the same to the last bit.
 #pragma once
 
-#include <span>
+namespace odobench {
+enum class InstructionSet;  // problems/instruction_set.hpp, which files of wide instructions must not include
+}
 
 namespace odobench::ternary {
 
@@ -24,7 +26,6 @@ struct GreedyBlock {
 };
 
 struct Kernel {
-  const char* name;
   // Runs every block to its local optimum.
   void (*greedy)(GreedyBlock* blocks, int count);
   // The row i, the first among equals, of the smallest table[i * columns + j] - |column[j] + row[i]|; `columns` is
@@ -32,7 +33,7 @@ struct Kernel {
   int (*smallest)(const double* table, const double* row, int rows, const double* column, int columns);
 };
 
-// Every kernel that this processor can run, the widest first; never empty.
-std::span<const Kernel> available();
+// Throws std::invalid_argument when the processor does not have it.
+Kernel select(InstructionSet set);
 
 }  // namespace odobench::ternary

@@ -135,8 +135,8 @@ int smallest(const double* table, const double* row, int rows, const double* col
 }
 
 template <int W>
-Kernel make_kernel(const char* name) {
-  return {name, greedy<W>, smallest<W>};
+Kernel make_kernel() {
+  return {greedy<W>, smallest<W>};
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ using testing::lines;
 using ::testing::Not;
 using testing::ProcessResult;
 using testing::run_bench;
+using testing::source_dir;
 using testing::TemporaryFolder;
 
 // Files of a folder by name, sorted.

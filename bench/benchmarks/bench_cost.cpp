@@ -89,11 +89,11 @@ void register_all(const Setting& s) {
     problem->residuals_and_jacobian(s.nominal, r, j);
     benchmark::DoNotOptimize(j.data());
   });
-  for (const kernel::Kernel& k : kernel::available()) {
+  for (const InstructionSet k : available_instruction_sets()) {
     const auto structure = std::make_shared<const CalibrationStructure>(s.recordings, s.nominal, k);
-    add(std::string("kernel/") + k.name + "/cost", 1,
+    add(std::string("kernel/") + to_string(k) + "/cost", 1,
         [&s, structure] { benchmark::DoNotOptimize(structure->cost(s.nominal)); });
-    add(std::string("kernel/") + k.name + "/normal_equations", 1, [&s, structure] {
+    add(std::string("kernel/") + to_string(k) + "/normal_equations", 1, [&s, structure] {
       NormalEquations e;
       structure->normal_equations(s.nominal, e);
       benchmark::DoNotOptimize(e.cost);

@@ -191,8 +191,8 @@ void register_all(const Setting& s) {
   add_search(s, "profile_greedy_window", [](const Blocks& b) { return ternary_greedy(b); });
   add_search(s, "exact_window", [](const Blocks& b) { return ternary_exact(b); });
   add_search(s, "relaxed_window", [](const Blocks& b) { return box_relaxation(b); });
-  for (const ternary::Kernel& kernel : ternary::available()) {
-    const std::string name = std::string("kernel/") + kernel.name;
+  for (const InstructionSet kernel : available_instruction_sets()) {
+    const std::string name = std::string("kernel/") + to_string(kernel);
     add_search(s, name + "/greedy", [kernel](const Blocks& b) { return ternary_greedy(b, kernel); });
     add_search(s, name + "/exact", [kernel](const Blocks& b) { return ternary_exact(b, {}, kernel); });
   }

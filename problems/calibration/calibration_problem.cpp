@@ -51,11 +51,10 @@ Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::
 }  // namespace
 
 CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
-                                       std::vector<Recording> recordings)
-    : parameters_(std::move(parameters)), recordings_(std::move(recordings)) {
+                                       std::vector<Recording> recordings, InstructionSet kernel)
+    : parameters_(std::move(parameters)), recordings_(std::move(recordings)), kernel_(kernel) {
   check(parameters_, recordings_);
-  structure_ =
-      std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel::available().front());
+  structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
 }
 
 CalibrationProblem::~CalibrationProblem() = default;

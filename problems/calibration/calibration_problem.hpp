@@ -15,6 +15,7 @@
 #include <span>
 
 #include "datasets/recording.hpp"
+#include "problems/instruction_set.hpp"
 #include "problems/problem.hpp"
 
 namespace odobench {
@@ -46,9 +47,11 @@ double cost(std::span<const Recording> recordings, const ConstVectorRef& z);
 // in one pass, and batches of candidates. Immutable; every member may be called from several threads.
 class CalibrationProblem {
  public:
-  // parameters: the twelve, in the order above. Throws std::invalid_argument on another count, on no recordings, or
-  // on a recording with fewer than two samples.
-  CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings);
+  // parameters: the twelve, in the order above. `kernel`: what evaluates the structured form; it decides the last bits of
+  // cost, normal equations and batches. Throws std::invalid_argument on another count, on no recordings, on a recording
+  // with fewer than two samples, or on a kernel that the processor does not have.
+  CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings,
+                     InstructionSet kernel = widest_instruction_set());
   ~CalibrationProblem();
   CalibrationProblem(CalibrationProblem&&) noexcept;
   CalibrationProblem& operator=(CalibrationProblem&&) noexcept;
@@ -63,6 +66,7 @@ class CalibrationProblem {
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
 
   const std::vector<Recording>& recordings() const { return recordings_; }
+  InstructionSet kernel() const { return kernel_; }
   PoseTrack integrate(std::size_t recording, const ConstVectorRef& z) const;
   // One entry per recording, for the error tables.
   std::vector<MaxErrors> max_errors(const ConstVectorRef& z) const;
@@ -71,6 +75,7 @@ class CalibrationProblem {
   struct Structure;
   std::vector<ParameterInfo> parameters_;
   std::vector<Recording> recordings_;
+  InstructionSet kernel_;
   std::unique_ptr<Structure> structure_;
 };
 

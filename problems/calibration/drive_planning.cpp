@@ -88,7 +88,8 @@ std::string words(const Vector& q, const std::vector<ParameterInfo>& parameters)
 }  // namespace
 
 DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                                   const std::vector<Recording>& replicas, const Vector& truth) {
+                                   const std::vector<Recording>& replicas, const Vector& truth,
+                                   InstructionSet kernel) {
   if (replicas.size() < 2)
     throw std::invalid_argument(
         fmt::format("planning: drive '{}' has {} replicas, expected at least 2", name, replicas.size()));
@@ -99,7 +100,7 @@ DriveInformation drive_information(const std::string& name, const std::vector<Pa
   Matrix scores(n, static_cast<Eigen::Index>(replicas.size()));
   for (std::size_t k = 0; k < replicas.size(); ++k) {
     NormalEquations e;
-    CalibrationProblem(parameters, {replicas[k]}).normal_equations(truth, e);
+    CalibrationProblem(parameters, {replicas[k]}, kernel).normal_equations(truth, e);
     d.normal += scale.asDiagonal() * e.jtj * scale.asDiagonal() / count;
     scores.col(static_cast<Eigen::Index>(k)) = scale.cwiseProduct(e.jtr);
   }
@@ -110,10 +111,11 @@ DriveInformation drive_information(const std::string& name, const std::vector<Pa
 }
 
 DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                                   const Recording& recording, const Vector& truth, double sigma) {
+                                   const Recording& recording, const Vector& truth, double sigma,
+                                   InstructionSet kernel) {
   const Vector scale = scales_of(parameters);
   NormalEquations e;
-  CalibrationProblem(parameters, {recording}).normal_equations(truth, e);
+  CalibrationProblem(parameters, {recording}, kernel).normal_equations(truth, e);
   const Matrix normal = scale.asDiagonal() * e.jtj * scale.asDiagonal();
   return {name, normal, Vector::Zero(scale.size()), sigma * sigma * normal};
 }

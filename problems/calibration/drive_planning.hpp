@@ -27,10 +27,12 @@ struct DriveInformation {
 
 // From at least two replicas of one drive. `truth`: the parameters they were made with. Throws std::invalid_argument.
 DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                                   const std::vector<Recording>& replicas, const Vector& truth);
+                                   const std::vector<Recording>& replicas, const Vector& truth,
+                                   InstructionSet kernel = widest_instruction_set());
 // From one recording without noise, as if every pose component had white noise of this standard deviation (m, rad).
 DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
-                                   const Recording& recording, const Vector& truth, double sigma);
+                                   const Recording& recording, const Vector& truth, double sigma,
+                                   InstructionSet kernel = widest_instruction_set());
 
 // A combination of parameters.
 struct Direction {

@@ -10,7 +10,9 @@
 // Everything is relative to the segment's start, so segments are independent of each other.
 #pragma once
 
-#include <span>
+namespace odobench {
+enum class InstructionSet;  // problems/instruction_set.hpp, which files of wide instructions must not include
+}
 
 namespace odobench::kernel {
 
@@ -45,8 +47,7 @@ struct NormalSums {
 };
 
 struct Kernel {
-  const char* name;  // "avx512", "avx2", "baseline"
-  int width;         // lanes of a block
+  int width;  // lanes of a block
   void (*cost)(const Block&, const double* s, bool exact, CostSums&);
   void (*normal)(const Block&, const double* s, bool exact, NormalSums&);
   // The same for blocks of width 1 (the last few steps of a recording).
@@ -54,7 +55,7 @@ struct Kernel {
   void (*normal_tail)(const Block&, const double* s, bool exact, NormalSums&);
 };
 
-// Every kernel this processor can run, the widest first; never empty.
-std::span<const Kernel> available();
+// Throws std::invalid_argument when the processor does not have it.
+Kernel select(InstructionSet set);
 
 }  // namespace odobench::kernel

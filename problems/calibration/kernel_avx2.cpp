@@ -1,11 +1,14 @@
 #if defined(__x86_64__)
+#if !defined(__AVX2__) || !defined(__FMA__)
+#error "this file is to be compiled with -mavx2 -mfma"
+#endif
 #include "problems/calibration/kernel_impl.hpp"
 #include "problems/calibration/kernel_variants.hpp"
 
 namespace odobench::kernel {
 
 Kernel avx2() {
-  return make_kernel<4>("avx2");
+  return make_kernel<4>();
 }
 
 }  // namespace odobench::kernel

@@ -201,8 +201,8 @@ void normal_block(const Block& block, const double* s, bool exact, NormalSums& s
 }
 
 template <int W>
-constexpr Kernel make_kernel(const char* name) {
-  return {name, W, cost_block<W>, normal_block<W>, cost_block<1>, normal_block<1>};
+constexpr Kernel make_kernel() {
+  return {W, cost_block<W>, normal_block<W>, cost_block<1>, normal_block<1>};
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ LinearMatrix linear_jacobian(const ConstVectorRef& z) {
 }
 
 CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordings,
-                                           const ConstVectorRef& nominal, const kernel::Kernel& kernel)
-    : kernel_(kernel) {
+                                           const ConstVectorRef& nominal, InstructionSet kernel)
+    : kernel_(kernel::select(kernel)) {
   heading_.origin = linear_parameters(nominal).tail<kHeading>();
   heading_.a.setZero();
   heading_.b.setZero();

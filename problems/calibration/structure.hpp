@@ -47,7 +47,7 @@ struct RecordingPlan {
 class CalibrationStructure {
  public:
   CalibrationStructure(const std::vector<Recording>& recordings, const ConstVectorRef& nominal,
-                       const kernel::Kernel& kernel);
+                       InstructionSet kernel);
 
   double cost(const ConstVectorRef& z) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
