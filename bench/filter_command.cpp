@@ -243,7 +243,7 @@ ExitCode filter_command(const FilterOptions& options) {
   RunRecord record = run.record(seconds_since(begin));
   record.dataset = fs::path(options.data).stem().string();
   record.base_seed = record.seed = options.seed;
-  record.termination = to_string(interrupted ? Termination::Interrupted : Termination::Converged);
+  record.termination = interrupted ? to_string(Termination::Interrupted) : "complete";
   record.message = interrupted ? "interrupted, the windows so far" : "all windows of the run";
   record.notes = {setup_note(options, setup)};
   record.context = run_context(1, kernel);

@@ -5,6 +5,7 @@
 
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/calibration/structure.hpp"
+#include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/synthetic_recording.hpp"
@@ -36,12 +37,12 @@ Vector perturbed(int variant) {
 
 TEST(Calibration, EveryKernelAgreesWithTheDirectForm) {
   const auto recordings = some_recordings();
-  for (const kernel::Kernel& k : kernel::available()) {
+  for (const InstructionSet k : available_instruction_sets()) {
     const CalibrationStructure structure(recordings, nominal_vector(), k);
     for (int variant = 0; variant < 4; ++variant) {
       const Vector z = perturbed(variant);
       const double expected = direct::cost(recordings, z);
-      EXPECT_NEAR(structure.cost(z) / expected, 1.0, 1e-12) << k.name << " variant " << variant;
+      EXPECT_NEAR(structure.cost(z) / expected, 1.0, 1e-12) << to_string(k) << " variant " << variant;
     }
   }
 }
@@ -50,12 +51,12 @@ TEST(Calibration, StepsThatTurnFarUseTheExactRotation) {
   // 2 s between samples: the heading turns by more than the rotation polynomial covers.
   const std::vector<Recording> recordings{synthetic_recording(300, 2.0, 1)};
   const Vector z = perturbed(1);
-  for (const kernel::Kernel& k : kernel::available()) {
+  for (const InstructionSet k : available_instruction_sets()) {
     const CalibrationStructure structure(recordings, nominal_vector(), k);
-    EXPECT_NEAR(structure.cost(z) / direct::cost(recordings, z), 1.0, 1e-11) << k.name;
+    EXPECT_NEAR(structure.cost(z) / direct::cost(recordings, z), 1.0, 1e-11) << to_string(k);
     NormalEquations e;
     structure.normal_equations(z, e);
-    EXPECT_NEAR(e.cost / direct::cost(recordings, z), 1.0, 1e-11) << k.name;
+    EXPECT_NEAR(e.cost / direct::cost(recordings, z), 1.0, 1e-11) << to_string(k);
   }
 }
 
@@ -68,15 +69,16 @@ TEST(Calibration, NormalEquationsAreThoseOfTheDenseJacobian) {
   problem.residuals_and_jacobian(z, r, j);
   const Matrix jtj = j.transpose() * j;
   const Vector jtr = j.transpose() * r;
-  for (const kernel::Kernel& k : kernel::available()) {
+  for (const InstructionSet k : available_instruction_sets()) {
     NormalEquations e;
     CalibrationStructure(recordings, nominal_vector(), k).normal_equations(z, e);
-    EXPECT_NEAR(e.cost / r.squaredNorm(), 1.0, 1e-12) << k.name;
+    EXPECT_NEAR(e.cost / r.squaredNorm(), 1.0, 1e-12) << to_string(k);
     for (Eigen::Index i = 0; i < 12; ++i) {
-      EXPECT_NEAR(e.jtr[i], jtr[i], 1e-11 * std::sqrt(jtj(i, i) * r.squaredNorm())) << k.name << " " << i;
+      EXPECT_NEAR(e.jtr[i], jtr[i], 1e-11 * std::sqrt(jtj(i, i) * r.squaredNorm()))
+          << to_string(k) << " " << i;
       for (Eigen::Index l = 0; l < 12; ++l)
         EXPECT_NEAR(e.jtj(i, l), jtj(i, l), 1e-11 * std::sqrt(jtj(i, i) * jtj(l, l)))
-            << k.name << " " << i << " " << l;
+            << to_string(k) << " " << i << " " << l;
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/window_problem.hpp"
+#include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
 #include "solvers/ternary_search.hpp"
 #include "tests/support/entropy_windows.hpp"
@@ -121,8 +122,8 @@ TEST(EntropyReference, BlockSearches) {
   for (std::size_t i = 0; i < windows.size(); ++i) {
     const WindowProblem problem(windows[i]);
     const BlockQuadratic& cost = problem.block_quadratic();
-    for (const ternary::Kernel& kernel : ternary::available()) {
-      const std::string where = windows[i].id + " " + kernel.name;
+    for (const InstructionSet kernel : available_instruction_sets()) {
+      const std::string where = windows[i].id + " " + to_string(kernel);
       const Solved greedy = solve_blocks(cost, *ternary_greedy(cost.blocks, kernel));
       EXPECT_EQ(greedy.t, vector_of(expected[i].at("greedy").at("t"))) << where;
       EXPECT_EQ(greedy.search.iterations, expected[i].at("greedy").at("iterations").get<int>()) << where;
@@ -319,11 +320,11 @@ TEST(TernaryExact, StoppedBranchAndBoundKeepsItsIncumbent) {
 TEST(TernaryGreedy, TiesGoToTheFirstCandidate) {
   QuadraticBlock block{{0, 1, 2}, Matrix::Identity(3, 3), Vector::Zero(3)};
   block.q(0, 1) = block.q(1, 0) = 0.5;
-  const auto t_of = [&](const Vector& g, const ternary::Kernel& kernel) {
+  const auto t_of = [&](const Vector& g, InstructionSet kernel) {
     block.g = g;
     return solve_blocks({0, {block}}, *ternary_greedy({block}, kernel));
   };
-  for (const ternary::Kernel& kernel : ternary::available()) {
+  for (const InstructionSet kernel : available_instruction_sets()) {
     // t_0 and t_1 promise the same; taking the first leaves nothing for the second.
     EXPECT_EQ(t_of(Eigen::Vector3d(2, 2, 0), kernel).t, Vector(Eigen::Vector3d(1, 0, 0)));
     EXPECT_EQ(t_of(Eigen::Vector3d(-2, 2, 0), kernel).t, Vector(Eigen::Vector3d(-1, 1, 0)));

@@ -249,9 +249,9 @@ TEST(LevenbergMarquardt, ScalingTheCostChangesNothing) {
       e.jtj *= factor;
     }
   };
-  const Problem plain = make_classic_problem("corner", 12);
+  const Problem inner = make_classic_problem("corner", 12);
   const double factor = std::ldexp(1.0, -27);  // a power of two: the very same bits must come out
-  const Problem scaled(Scaled{plain, factor});
+  const Problem plain(Scaled{inner, 1.0}), scaled(Scaled{inner, factor});
   const Result a = solve(plain, {"lm", {}}, plain.start(), {}),
                b = solve(scaled, {"lm", {}}, plain.start(), {});
   EXPECT_EQ(a.x, b.x);

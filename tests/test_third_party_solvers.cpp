@@ -176,7 +176,7 @@ TEST(ThirdParty, OptionsReachTheLibraries) {
       {"nlopt:lbfgs", "nlopt:lbfgs[memory=2]"},
       {"nlopt:mlsl", "nlopt:mlsl[local=slsqp]"},
       {"ceres", "ceres[radius=1e-2]"},
-      {"ip", "ip[mu_strategy=monotone]"},
+      {"ip[restarts=0]", "ip[restarts=0,mu_strategy=monotone]"},
       {"ip[hessian=lbfgs]", "ip[hessian=lbfgs,memory=2]"}};
   for (const auto& [one, other] : pairs) {
     const Result a = solve_with(p, one, 400), b = solve_with(p, other, 400);
@@ -354,7 +354,7 @@ TEST(Calibration, CeresAndIpReachItFromTwentyRandomStarts) {
 
 TEST(Calibration, CeresAloneStalls) {
   ODOBENCH_NEEDS_SHARED();
-  const Result r = solve_with(calibration(), "ceres[active_set=false,cost_tolerance=1e-14]", 3000);
+  const Result r = solve_with(calibration(), "ceres[active_set=false,cost_tolerance=1e-14,radius=1e4]", 3000);
   EXPECT_GT(r.cost, kOptimum * 1.0001) << r.brief();
   EXPECT_EQ(r.termination, Termination::Stalled) << r.brief();
 }
