@@ -1,6 +1,7 @@
 #include "bench/compare_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,49 @@ bool draws_random_numbers(const RunRecord& record) {
   }
 }
 
+bool same_box(const RunRecord& a, const RunRecord& b) {
+  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(),
+                    [](const ParameterValue& p, const ParameterValue& q) {
+                      return p.name == q.name && p.lower == q.lower && p.upper == q.upper;
+                    });
+}
+
+// Results of the old side that no limit can judge: their label is gone for their problem and data set, or what is there
+// has another dimension or box. Named once each.
+std::vector<std::string> without_partner(const std::vector<RunRecord>& before,
+                                         const std::vector<RunRecord>& after) {
+  std::vector<std::string> list;
+  for (const RunRecord& old : before) {
+    if (old.kind == "skipped" || !old.cost) continue;
+    bool label = false, box = false;
+    for (const RunRecord& r : after) {
+      if (r.problem != old.problem || r.dataset != old.dataset || r.label != old.label || !r.cost) continue;
+      label = true;
+      box = box || same_box(r, old);
+    }
+    if (box) continue;
+    const std::string text =
+        fmt::format("'{}' of {}{}", old.label, old.dataset.empty() ? old.problem : old.dataset,
+                    label ? " (another dimension or box)" : "");
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+  }
+  return list;
+}
+
+// Whether the limits met what they are there for; says in one line what they did not.
+bool compared_everything(const RunComparison& comparison, const std::vector<RunRecord>& before,
+                         const std::vector<RunRecord>& after) {
+  const std::vector<std::string> missing = without_partner(before, after);
+  if (comparison.gated > 0 && missing.empty()) return true;
+  warn(fmt::format("nothing to compare: {}{}",
+                   comparison.gated == 0 ? "no limit of --fail-on meets a pair of results" : "",
+                   missing.empty()
+                       ? ""
+                       : fmt::format("{}no partner on the new side for {}", comparison.gated == 0 ? "; " : "",
+                                     fmt::join(missing, ", "))));
+  return false;
+}
+
 }  // namespace
 
 std::vector<Gate> parse_gates(const std::vector<std::string>& lists) {
@@ -113,7 +157,9 @@ CLI::App* add_compare_verb(CLI::App& app, CompareArguments& a) {
   verb->add_option("old", a.before, "folder with runs.jsonl, or .jsonl file")->required();
   verb->add_option("new", a.after, "the same of the runs to judge")->required();
   verb->add_option("--fail-on", a.fail_on,
-                   "limits such as J:+0.1%,seconds:+20%; exit code 1 when one is passed for sure [none]")
+                   "limits such as J:+0.1%,seconds:+20%; exit code 1 when one is passed for sure, or when a "
+                   "result of the "
+                   "old side has no partner [none]")
       ->type_name("LIST")
       ->allow_extra_args(false);
   verb->add_option("--metrics", a.metrics, "what to compare; 'all' for everything [all but e_sr]")
@@ -153,7 +199,8 @@ ExitCode compare_command(const CompareArguments& a) {
     print_text(change_summary_markdown(comparison));
   else
     print_tables(change_tables(comparison, format == Format::Json || format == Format::Csv), format);
-  return comparison.failures() > 0 ? ExitCode::CheckFailed : ExitCode::Success;
+  const bool complete = options.gates.empty() || compared_everything(comparison, before, after);
+  return comparison.failures() > 0 || !complete ? ExitCode::CheckFailed : ExitCode::Success;
 }
 
 }  // namespace odobench

@@ -24,6 +24,7 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (parameters[i].lower < parameters[i].upper) result.parameters.push_back(static_cast<Eigen::Index>(i));
   const auto n = static_cast<Eigen::Index>(result.parameters.size());
+  if (n == 0) return result;  // everything is held fixed: nothing to determine
 
   const Problem own = problem;
   NormalEquations e;
@@ -97,9 +98,10 @@ std::string identifiability_note(const Problem& problem, const Identifiability& 
   return fmt::format(
       "Barely determined ({}): the singular values of the scaled Jacobian span {:.3g} .. "
       "{:.2g}, and "
-      "the relative standard deviation exceeds the half width of the box for {}. Trust the costs and errors "
-      "more than "
-      "these single parameters.",
+      "even if residuals were independent the relative standard deviation would exceed the half width of the "
+      "box "
+      "for {}; the real one is several times larger. Trust the costs and errors more than these single "
+      "parameters.",
       what, id.singular_values[0], id.singular_values[n - 1], list);
 }
 

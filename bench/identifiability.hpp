@@ -23,7 +23,7 @@ struct Identifiability {
   std::vector<Eigen::Index> parameters;  // index of each of the n free parameters
 };
 
-// Throws std::logic_error when the problem has no residuals.
+// Empty where every parameter is held fixed. Throws std::logic_error when the problem has no residuals.
 Identifiability identifiability(const Problem& problem, const ConstVectorRef& x);
 
 // The series of reports/record.hpp.

@@ -87,7 +87,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
     if (loaded.calibration) {
       const std::string what = fmt::format("{}, at the result of {}", record.dataset, record.label);
       const Identifiability id = identifiability(loaded.problem, result.x);
-      record.series = identifiability_series(id);
+      if (!id.parameters.empty()) record.series = identifiability_series(id);
       const std::string note = identifiability_note(loaded.problem, id, what);
       if (!note.empty()) record.notes.push_back(note);
     }

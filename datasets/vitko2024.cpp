@@ -219,6 +219,39 @@ std::vector<NamedParameters> published_parameters() {
   return sets;
 }
 
+// SHA-256 of the sums of the 60 published files, abs_1, odom_1, abs_2, ..., one after the other
+// (scripts/vitko2024.sha256 lists them).
+constexpr std::string_view kPublishedSums =
+    "a1f89908b5854df474fb69441909a361c0a5812ef63fcc7bdb498cd4e79436a3";
+
+bool is_published(const std::vector<SourceFile>& files) {
+  std::string sums;
+  for (const SourceFile& file : files) sums += file.sha256;
+  return sha256(sums) == kPublishedSums;
+}
+
+// What only the published files can claim.
+void describe_published(Dataset& d) {
+  d.description =
+      "30 drives of a robot with four steered and driven wheels under motion capture, six trajectories, five "
+      "times each";
+  d.known_parameters = published_parameters();
+  d.provenance.source =
+      "J. Vitko, Calibration and localization of a mobile robot with four independent steering and four "
+      "independent driving "
+      "wheels, master's thesis, University of Zagreb, 2024; recordings: "
+      "https://github.com/JakVit/4WIS4WID_parameter_calibration, commit "
+      "862117d37862a74d15503cfe8810d5f61a00bbe6";
+  d.provenance.licence = "none stated";
+}
+
+void describe_others(Dataset& d) {
+  d.description =
+      "30 drives in the layout of the recordings published with J. Vitko's thesis, which they are not";
+  d.provenance.source = "unknown: files in that layout whose sums are not the published ones";
+  d.provenance.licence = "unknown";
+}
+
 }  // namespace
 
 Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress, int threads) {
@@ -230,19 +263,8 @@ Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress,
 
   Dataset d;
   d.name = "vitko2024";
-  d.description =
-      "30 drives of a robot with four steered and driven wheels under motion capture, six trajectories, five "
-      "times each";
   d.robot = robot_4wis4wid();
   d.trajectories = trajectories_4wis4wid();
-  d.known_parameters = published_parameters();
-  d.provenance.source =
-      "J. Vitko, Calibration and localization of a mobile robot with four independent steering and four "
-      "independent driving "
-      "wheels, master's thesis, University of Zagreb, 2024; recordings: "
-      "https://github.com/JakVit/4WIS4WID_parameter_calibration, commit "
-      "862117d37862a74d15503cfe8810d5f61a00bbe6";
-  d.provenance.licence = "none stated";
   d.provenance.made_by = "bench import vitko2024";
   for (Pair& pair : pairs) {
     const auto note = [&](std::size_t moved, const SourceFile& file) {
@@ -256,6 +278,10 @@ Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress,
     d.provenance.files.push_back(std::move(pair.wheels));
     d.recordings.push_back(std::move(pair.recording));
   }
+  if (is_published(d.provenance.files))
+    describe_published(d);
+  else
+    describe_others(d);
   return d;
 }
 

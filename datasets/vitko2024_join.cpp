@@ -16,7 +16,10 @@ Recording join(CaptureLog capture, const WheelLog& wheels) {
   r.y = kept(capture.y);
   r.theta = kept(capture.yaw);
   for (std::size_t i = 0; i < kWheelCount; ++i) {
-    r.steering[i] = interpolate(wheels.time_us, wheels.steering[i], stamps);
+    // Along the shorter arc: a sensor with the range (-pi, pi] reports 3.13 and -3.13 for neighbours.
+    std::vector<double> steering = wheels.steering[i];
+    unwrap(steering);
+    r.steering[i] = interpolate(wheels.time_us, steering, stamps);
     r.wheel_speed[i] = interpolate(wheels.time_us, wheels.wheel_speed[i], stamps);
   }
   r.time_us = stamps;

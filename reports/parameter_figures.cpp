@@ -40,7 +40,7 @@ const RunRecord* best_described(const Comparison& comparison) {
   return best;
 }
 
-// Of the plot, %: all bounds and values, and the confidence intervals unless they are far wider than the box.
+// Of the plot, %: all bounds and values, and the bars unless they are far wider than the box.
 double plot_edge(const Comparison& comparison) {
   double box = 0, interval = 0;
   for (const ComparisonRow& row : comparison.rows) {
@@ -151,9 +151,12 @@ void add_parameter_figure(const Comparison& comparison, const std::string& prefi
   if (names.empty()) return;
   const std::string id = prefix + "parameters";
   const std::string caption =
-      "Deviation from nominal in per cent, with the bounds as grey ticks. Bars: 95 % confidence of linear "
-      "least-squares theory, cut at the edge; a bar beyond the bounds means that the data hardly determine "
-      "this parameter.";
+      "Deviation from nominal in per cent, with the bounds as grey ticks. Bars: 1.96 deviations of linear "
+      "least-squares theory if residuals were independent, cut at the edge. They are not independent, so "
+      "these "
+      "bars are no intervals for the truth, which are several times wider; a bar beyond the bounds means "
+      "that the "
+      "data hardly determine this parameter.";
   document.datasets[id] = csv;
   section.blocks.push_back(Figure{id, "Parameters against their bounds" + comparison.title_suffix, caption,
                                   parameter_spec(id, caption, names, labels, plot_edge(comparison))});

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTraceLimit = 400;
+// So many costs, not one of them finite: no method goes on from there.
+constexpr std::int64_t kHopeless = 1000;
 
 // Halves the trace, keeping first and last, so that its length stays bounded and its shape does not change.
 void thin(std::vector<TraceEntry>& trace) {
@@ -77,6 +79,8 @@ bool Run::stop() {
     stop_reason_ = Termination::Interrupted;
   else if (best_cost_ <= budget_.target_cost)
     stop_reason_ = Termination::TargetReached;
+  else if (non_finite_ >= kHopeless && !has_best())
+    stop_reason_ = Termination::Failed;
   else if (evaluations_left() == 0)
     stop_reason_ = Termination::MaxEvaluations;
   else if (budget_.max_seconds > 0 && seconds() >= budget_.max_seconds)
@@ -92,6 +96,8 @@ std::string Run::stop_message() const {
       return fmt::format("{} evaluations >= limit {}", evaluations(), budget_.max_evaluations);
     case Termination::TimeLimit:
       return fmt::format("time limit of {:g} s is used up", budget_.max_seconds);
+    case Termination::Failed:
+      return fmt::format("not one of {} costs is finite", non_finite_);
     case Termination::Interrupted:
       return fmt::format("interrupted after {} evaluations", evaluations());
     default:

@@ -60,6 +60,10 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
   std::unique_ptr<Solver> polisher;
   if (polished) polisher = find_solver(options.polish.name).make(options.polish.options, nullptr);
 
+  if (start.size() != problem.dimension() || !start.allFinite())
+    throw std::invalid_argument(fmt::format("start: expected {} finite values, found {}{}",
+                                            problem.dimension(), start.size(),
+                                            start.allFinite() ? "" : ", one of them not finite"));
   result.message = solver->why_not(problem);
   if (result.message.empty() && polished) result.message = polisher->why_not(problem);
   if (!result.message.empty()) {

@@ -38,7 +38,7 @@ struct Result {
   std::string full() const;   // several lines, with the parameters
 };
 
-// `start` in parameter units (n). Throws std::invalid_argument on unknown solvers or bad options; everything that
+// `start` in parameter units (n), finite. Throws std::invalid_argument on unknown solvers, bad options or such a start; everything that
 // happens while running is in the result: a method that cannot run gives NotApplicable with the reason, a method that
 // throws gives Failed with its message and the best point so far.
 Result solve(const Problem& problem, const SolverSpec& solver, const Vector& start,

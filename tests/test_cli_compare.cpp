@@ -50,6 +50,27 @@ TEST_F(CliCompare, NoChange) {
   EXPECT_THAT(same.out, Not(HasSubstr("What changed")));
 }
 
+TEST_F(CliCompare, AGateThatComparesNothingFails) {
+  const std::string before = file("a.jsonl", repeats("pso", 1)), after = file("b.jsonl", repeats("ceres", 1));
+  const ProcessResult gone = run_bench({"compare", before, after, "--fail-on=J:+0.1%"});
+  EXPECT_EQ(gone.exit_code, 1);
+  EXPECT_THAT(gone.err, HasSubstr("nothing to compare: no limit of --fail-on meets a pair of results"));
+  EXPECT_THAT(gone.err, HasSubstr("'pso'"));
+  EXPECT_EQ(run_bench({"compare", before, after}).exit_code, 0);  // no gate, no verdict
+  std::vector<RunRecord> wider = repeats("pso", 1);
+  for (RunRecord& r : wider) r.parameters.push_back({"x", "1", 0, 0, -1, 1, ""});
+  const ProcessResult other = run_bench({"compare", before, file("c.jsonl", wider), "--fail-on=J:+0.1%"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("another dimension or box"));
+  // One of two labels is left: what is gone is named, what is there is still judged.
+  std::vector<RunRecord> both = repeats("pso", 1);
+  for (const RunRecord& r : repeats("lm", 1)) both.push_back(r);
+  const ProcessResult half = run_bench({"compare", file("d.jsonl", both), before, "--fail-on=J:+0.1%"});
+  EXPECT_EQ(half.exit_code, 1);
+  EXPECT_THAT(half.err, HasSubstr("no partner on the new side for 'lm'"));
+  EXPECT_THAT(half.err, Not(HasSubstr("'pso'")));
+}
+
 TEST_F(CliCompare, RegressionFailsOnlyBeyondAStatedLimit) {
   const std::string before = file("a.jsonl", repeats("pso", 1)), after = file("b.jsonl", repeats("pso", 1.5));
   EXPECT_EQ(run_bench({"compare", before, after}).exit_code, 0);

@@ -15,6 +15,7 @@
 #include "datasets/synchronise.hpp"
 #include "datasets/vitko2024.hpp"
 #include "datasets/vitko2024_csv.hpp"
+#include "datasets/vitko2024_join.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
@@ -125,6 +126,24 @@ TEST(ImportVitko2024, MapsByNameAndSynchronises) {
   }
 }
 
+TEST(ImportVitko2024, SteeringIsInterpolatedAlongTheShorterArc) {
+  vitko2024::CaptureLog capture;
+  vitko2024::WheelLog wheels;
+  for (int k = 0; k < 60; ++k) {
+    capture.time_us.push_back(1000 * k + 500);
+    for (auto* values : {&capture.x, &capture.y, &capture.yaw}) values->push_back(0);
+    wheels.time_us.push_back(1000 * k);
+    for (std::size_t i = 0; i < kWheelCount;
+         ++i) {  // to and fro across +-pi, as a sensor with that range reports it
+      wheels.steering[i].push_back(k % 2 == 0 ? 3.13 : -3.13);
+      wheels.wheel_speed[i].push_back(1);
+    }
+  }
+  const Recording r = vitko2024::join(capture, wheels);
+  for (std::size_t i = 0; i < kWheelCount; ++i)
+    for (const double angle : r.steering[i]) EXPECT_NEAR(std::cos(angle), -1, 1e-4) << angle;
+}
+
 TEST(ImportVitko2024, NamesTrajectoriesRobotAndSources) {
   const RawFolder raw;
   const Dataset d = import_vitko2024(raw.path());
@@ -146,7 +165,10 @@ TEST(ImportVitko2024, NamesTrajectoriesRobotAndSources) {
     EXPECT_EQ(p.lower, std::min(nominal[i] * 0.95, nominal[i] * 1.05));
     EXPECT_EQ(p.upper, std::max(nominal[i] * 0.95, nominal[i] * 1.05));
   }
-  EXPECT_EQ(d.provenance.licence, "none stated");
+  // Files in the published layout that are not the published ones claim nothing of them.
+  EXPECT_EQ(d.provenance.licence, "unknown");
+  EXPECT_EQ(d.provenance.source.find("Vitko"), std::string::npos);
+  EXPECT_TRUE(d.known_parameters.empty());
   ASSERT_EQ(d.provenance.files.size(), 60u);
   EXPECT_EQ(d.provenance.files[3].path, "dataset/odom_2.csv");
   EXPECT_EQ(d.provenance.files[3].sha256, sha256(wheel_file()));
@@ -325,6 +347,8 @@ TEST(ImportVitko2024, ReproducesThePublishedRecordings) {
   }
   EXPECT_EQ(total, reference["total_samples"].get<std::size_t>());
   EXPECT_TRUE(d.notes.empty());
+  EXPECT_EQ(d.provenance.licence, "none stated");
+  EXPECT_NE(d.provenance.source.find("Vitko"), std::string::npos);
   const std::map<std::string, std::string> sets = {
       {"published:ip", "fmincon"}, {"published:lm", "lm"}, {"published:ga", "ga"}, {"published:pso", "pso"}};
   ASSERT_EQ(d.known_parameters.size(), sets.size());
