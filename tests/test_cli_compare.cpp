@@ -120,7 +120,7 @@ TEST_F(CliCompare, ListsALabelThatOneSideLacks) {
   more.push_back(run_record("ga", 1));
   const std::string before = file("a.jsonl", more), after = file("b.jsonl", repeats("pso", 1));
   const ProcessResult run = run_bench({"compare", before, after, "--fail-on=J:+1%", "--format=csv"});
-  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.exit_code, 1);  // what is gone cannot have passed
   EXPECT_THAT(run.out,
               HasSubstr("#table,one_sided,On one side only\r\nlabel,problem,dataset,metric,side,remark"
                         "\r\nga,sphere,,all,old,\r\n"));
