@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "bench/check_command.hpp"
 #include "bench/number_text.hpp"
@@ -104,22 +107,29 @@ bool same_box(const RunRecord& a, const RunRecord& b) {
 
 // Results of the old side that no limit can judge: their label is gone for their problem and data set, or what is there
 // has another dimension or box. Named once each.
-std::vector<std::string> without_partner(const std::vector<RunRecord>& before,
+std::vector<std::string> without_partner(const RunComparison& comparison,
+                                         const std::vector<RunRecord>& before,
                                          const std::vector<RunRecord>& after) {
+  const auto name = [](const auto& of) {
+    return fmt::format("'{}' of {}", of.label, of.dataset.empty() ? of.problem : of.dataset);
+  };
   std::vector<std::string> list;
+  for (const OneSided& o : comparison.one_sided)
+    if (o.in_old && o.metric.empty() && o.remark.empty()) list.push_back(name(o));
+  using Row = std::tuple<std::string, std::string, std::string>;
+  std::map<Row, std::vector<const RunRecord*>> boxes;  // of the new side, one record per box
+  const auto there = [](const std::vector<const RunRecord*>& seen, const RunRecord& r) {
+    return std::any_of(seen.begin(), seen.end(), [&](const RunRecord* s) { return same_box(*s, r); });
+  };
+  for (const RunRecord& r : after) {
+    std::vector<const RunRecord*>& seen = boxes[{r.problem, r.dataset, r.label}];
+    if (r.cost && !there(seen, r)) seen.push_back(&r);
+  }
+  std::set<std::string> other;
   for (const RunRecord& old : before) {
-    if (old.kind == "skipped" || !old.cost) continue;
-    bool label = false, box = false;
-    for (const RunRecord& r : after) {
-      if (r.problem != old.problem || r.dataset != old.dataset || r.label != old.label || !r.cost) continue;
-      label = true;
-      box = box || same_box(r, old);
-    }
-    if (box) continue;
-    const std::string text =
-        fmt::format("'{}' of {}{}", old.label, old.dataset.empty() ? old.problem : old.dataset,
-                    label ? " (another dimension or box)" : "");
-    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+    const auto seen = boxes.find({old.problem, old.dataset, old.label});
+    if (!old.cost || seen == boxes.end() || seen->second.empty() || there(seen->second, old)) continue;
+    if (other.insert(name(old)).second) list.push_back(name(old) + " (another dimension or box)");
   }
   return list;
 }
@@ -127,7 +137,7 @@ std::vector<std::string> without_partner(const std::vector<RunRecord>& before,
 // Whether the limits met what they are there for; says in one line what they did not.
 bool compared_everything(const RunComparison& comparison, const std::vector<RunRecord>& before,
                          const std::vector<RunRecord>& after) {
-  const std::vector<std::string> missing = without_partner(before, after);
+  const std::vector<std::string> missing = without_partner(comparison, before, after);
   if (comparison.gated > 0 && missing.empty()) return true;
   warn(fmt::format("nothing to compare: {}{}",
                    comparison.gated == 0 ? "no limit of --fail-on meets a pair of results" : "",
@@ -158,8 +168,7 @@ CLI::App* add_compare_verb(CLI::App& app, CompareArguments& a) {
   verb->add_option("new", a.after, "the same of the runs to judge")->required();
   verb->add_option("--fail-on", a.fail_on,
                    "limits such as J:+0.1%,seconds:+20%; exit code 1 when one is passed for sure, or when a "
-                   "result of the "
-                   "old side has no partner [none]")
+                   "result of the old side has no partner [none]")
       ->type_name("LIST")
       ->allow_extra_args(false);
   verb->add_option("--metrics", a.metrics, "what to compare; 'all' for everything [all but e_sr]")

@@ -99,8 +99,7 @@ std::string identifiability_note(const Problem& problem, const Identifiability& 
       "Barely determined ({}): the singular values of the scaled Jacobian span {:.3g} .. "
       "{:.2g}, and "
       "even if residuals were independent the relative standard deviation would exceed the half width of the "
-      "box "
-      "for {}; the real one is several times larger. Trust the costs and errors more than these single "
+      "box for {}; the real one is several times larger. Trust the costs and errors more than these single "
       "parameters.",
       what, id.singular_values[0], id.singular_values[n - 1], list);
 }

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "solvers/local_model.hpp"
@@ -142,7 +141,8 @@ Outcome LevenbergMarquardt::minimise(Run& run) const {
   Outcome outcome = first.advance(options_.patience > 0 ? std::min(options_.patience, options_.iterations)
                                                         : options_.iterations);
   const bool crawls = outcome.termination == Termination::IterationLimit;
-  if (run.stop() || options_.patience == 0 || (!crawls && outcome.termination != Termination::Stalled))
+  if (run.stop() || options_.patience == 0 || first.iterations() >= options_.iterations ||
+      (!crawls && outcome.termination != Termination::Stalled))
     return outcome;
 
   Descent second(run, options_, StepScale::Box);

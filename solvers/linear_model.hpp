@@ -2,10 +2,7 @@
 // residuals can bring out of the range or the digits of doubles.
 #pragma once
 
-#include <optional>
-
 #include "problems/problem.hpp"
-#include "solvers/box.hpp"
 
 namespace odobench {
 

@@ -50,6 +50,8 @@ class Objective {
     scale_ = 1.0 / std::abs(cost);
     worst_ = 0;
     lowest_ = kInfinity;
+    gradient_.resize(0);
+    gradient_at_.resize(0);
   }
   void attach(nlopt_opt handle) { handle_ = handle; }
   int evaluations() const { return evaluations_; }
@@ -291,7 +293,7 @@ Outcome NloptSolver::minimise(Run& run) const {
     const bool broken_off = algorithm.local && code < 0 && round < kMostBrokenOff;
     if (broken_off) continue;
     if (algorithm.global) return ended(code, in_words(code, options_));
-    if (algorithm.gradient && !objective.has_gradient())
+    if (algorithm.gradient && round == 0 && !objective.has_gradient())
       return {Termination::Failed, "the derivatives at the start are not finite"};
     const double slope = slope_on_bounds(run, objective, options_.xtol);
     if (run.stop()) return {};

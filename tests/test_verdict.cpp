@@ -224,15 +224,16 @@ double promise_by_differences(const Problem& problem, const Vector& x) {
   gram.diagonal().array() += 1e-13L;  // what differences leave of dependent columns is no direction
   const LongVector slope = a.transpose() * target;
   const LongVector step = gram.ldlt().solve(slope);
-  for (std::size_t k = 0; k < places.size();
-       ++k) {  // a plateau: the step leaves the box, where no one may go
+  long double part = 1;  // of the step, until it meets a bound: on a plateau it leads far out of the box
+  for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& p = list[static_cast<std::size_t>(places[k].first)];
-    const long double to = static_cast<long double>(x[places[k].first]) - step[static_cast<Eigen::Index>(k)] *
-                                                                              r.cast<long double>().norm() /
-                                                                              places[k].second;
-    if (to < p.lower || to > p.upper) return 0;
+    const long double move =
+        -step[static_cast<Eigen::Index>(k)] * r.cast<long double>().norm() / places[k].second;
+    const long double room =
+        static_cast<long double>(move < 0 ? p.lower : p.upper) - static_cast<long double>(x[places[k].first]);
+    if (move != 0) part = std::min(part, std::max(0.0L, room / move));
   }
-  return static_cast<double>(slope.dot(step));
+  return static_cast<double>(part * (2 - part) * slope.dot(step));
 }
 
 TEST(CertifiedProblems, ConvergedIsNeverSaidFalsely) {
