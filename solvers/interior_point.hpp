@@ -32,7 +32,7 @@ struct InteriorPointOptions {
   double tolerance = 1e-9;
   int iterations = 3000;
   int restarts = 10;
-  double restart_gain = 1e-10;
+  double restart_gain = 1e-9;
   void bind(OptionBinder& binder);
   void validate() const {}
 };
