@@ -46,7 +46,8 @@ RunRecord full_record() {
   r.statistics = {{"gap_exact_mean", 1.0 / 3}, {"windows", 189}};
   r.series = {{"nees", {1.0 / 3, 2}}};
   r.notes = {"a1 and b1 are barely determined", ""};
-  r.context = {"some cpu", "g++ 12.2", "Release", "deadbeef", "0.1.0", 2, "bench --out=a", "Ceres 2.1.0", "avx2"};
+  r.context = {"some cpu", "g++ 12.2",      "Release",     "deadbeef", "0.1.0",
+               2,          "bench --out=a", "Ceres 2.1.0", "avx2"};
   r.time_utc = "2026-11-22T10:00:00Z";
   return r;
 }
