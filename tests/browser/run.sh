@@ -33,11 +33,26 @@ fi
 cp "$here"/*.mjs "$work/"  # where the packages are
 export CHARTS=$build/charts WEB=$here/../../reports/web
 
+# A browser that hangs answers no call and no time limit of a test; it is ended, said so, and begun once more.
+# What the page does wrong is a failure at once.
+limit=${ODOBENCH_BROWSER_SECONDS:-400}
+look_at() {  # look_at PAGE FOLDER NAMES FILE
+  local attempt status=0
+  for attempt in 1 2; do
+    status=0
+    (cd "$work" && REPORT=$(realpath "$1") OUTPUT=$work/output/$2 \
+      timeout --kill-after=10 "$limit" node --test-name-pattern="$3" "$4.test.mjs") || status=$?
+    ((status == 124 || status == 137)) || return "$status"
+    echo "browser: no end of $4.test.mjs within $limit s (attempt $attempt of 2)"
+  done
+  return "$status"
+}
+
 look() {  # look PAGE FOLDER [NAMES]      NAMES: of the tests of the page to run, a regular expression
   local status=0 file
   mkdir -p "$work/output/$2"
   for file in schema svg page; do
-    (cd "$work" && REPORT=$(realpath "$1") OUTPUT=$work/output/$2 node --test-name-pattern="${3:-.}" "$file.test.mjs") || status=1
+    look_at "$1" "$2" "${3:-.}" "$file" || status=1
   done
   return "$status"
 }
