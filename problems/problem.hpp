@@ -59,6 +59,14 @@ struct EvaluationCounts {
   std::int64_t normal_equations = 0;
   std::int64_t lattice = 0;  // changes of a lattice point that were looked at
   std::int64_t total() const { return cost + gradient + residuals + normal_equations + lattice; }
+  EvaluationCounts& operator+=(const EvaluationCounts& other) {
+    cost += other.cost;
+    gradient += other.gradient;
+    residuals += other.residuals;
+    normal_equations += other.normal_equations;
+    lattice += other.lattice;
+    return *this;
+  }
 };
 
 template <class M>
@@ -181,6 +189,8 @@ class Problem {
   double lattice_change(const LatticePoint& point, Eigen::Index i, double value) const;
 
   const EvaluationCounts& counts() const { return counts_; }
+  // Takes calls into account that were made through another handle.
+  void count(const EvaluationCounts& calls) const { counts_ += calls; }
 
  private:
   struct Interface {

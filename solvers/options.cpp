@@ -36,13 +36,14 @@ std::string range_text(T low, T high) {
   return fmt::format("{}..{}", low, high);
 }
 
+// Brackets may hold brackets: multistart[solver=lm[patience=100],starts=20].
 std::vector<std::string> split_outside_brackets(std::string_view text) {
   std::vector<std::string> parts(1);
   int depth = 0;
   for (char c : text) {
     if (c == '[') ++depth;
     if (c == ']') --depth;
-    if (depth < 0 || depth > 1)
+    if (depth < 0)
       throw std::invalid_argument(
           fmt::format("solver list '{}': unbalanced brackets; expected name[option=value,...]", text));
     if (c == ',' && depth == 0)
@@ -56,6 +57,16 @@ std::vector<std::string> split_outside_brackets(std::string_view text) {
   return parts;
 }
 
+// Where the bracket that is opened at `open` is closed.
+std::size_t closing_bracket(std::string_view text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t i = open; i < text.size(); ++i) {
+    if (text[i] == '[') ++depth;
+    if (text[i] == ']' && --depth == 0) return i;
+  }
+  return std::string_view::npos;
+}
+
 SolverSpec parse_spec(const std::string& part, std::string_view whole) {
   SolverSpec spec;
   const auto open = part.find('[');
@@ -64,12 +75,11 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
     throw std::invalid_argument(
         fmt::format("solver list '{}': an empty solver name; expected e.g. lm,pso[swarm=60]", whole));
   if (open == std::string::npos) return spec;
-  if (trimmed(part).back() != ']')
+  if (closing_bracket(part, open) != trimmed(part).size() + part.find_first_not_of(" \t") - 1)
     throw std::invalid_argument(fmt::format("solver list '{}': text after ']' in '{}'", whole, part));
   const std::string inside = part.substr(open + 1, part.rfind(']') - open - 1);
-  for (std::size_t begin = 0; begin <= inside.size() && !trimmed(inside).empty();) {
-    const auto end = std::min(inside.find(',', begin), inside.size());
-    const std::string item = inside.substr(begin, end - begin);
+  if (trimmed(inside).empty()) return spec;
+  for (const std::string& item : split_outside_brackets(inside)) {
     const auto equals = item.find('=');
     if (equals == std::string::npos || trimmed(item.substr(0, equals)).empty())
       throw std::invalid_argument(
@@ -77,7 +87,6 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
     const std::string key = trimmed(item.substr(0, equals));
     if (!spec.options.emplace(key, trimmed(item.substr(equals + 1))).second)
       throw std::invalid_argument(fmt::format("solver '{}': option '{}' is given twice", spec.name, key));
-    begin = end + 1;
   }
   return spec;
 }
@@ -168,6 +177,15 @@ void OptionBinder::choice(std::string name, std::string& field, std::string help
                       [&field, allowed = std::move(allowed), list](const std::string& text) -> std::string {
                         if (std::find(allowed.begin(), allowed.end(), text) == allowed.end())
                           return "expected " + list;
+                        field = text;
+                        return {};
+                      }});
+}
+
+void OptionBinder::text(std::string name, std::string& field, std::string help, std::string allowed) {
+  entries_.push_back({std::move(name), std::move(help), std::move(allowed), [&field] { return field; },
+                      [&field](const std::string& text) -> std::string {
+                        if (text.empty()) return "expected a value";
                         field = text;
                         return {};
                       }});

@@ -19,7 +19,8 @@ struct SolverSpec {
   std::string text() const;  // canonical: options in alphabetical order; the label of tables
 };
 
-// Splits "lm,pso[swarm=60,inertia=0.7]" at the commas outside brackets. Throws std::invalid_argument on unbalanced
+// Splits "lm,pso[swarm=60,inertia=0.7]" at the commas outside brackets; a value may have brackets of its own,
+// multistart[solver=lm[patience=100]]. Throws std::invalid_argument on unbalanced
 // brackets, empty names, an option without '=' or given twice.
 std::vector<SolverSpec> parse_solver_list(std::string_view text);
 
@@ -43,6 +44,9 @@ class OptionBinder {
                int highest = std::numeric_limits<int>::max());
   void flag(std::string name, bool& field, std::string help);
   void choice(std::string name, std::string& field, std::string help, std::vector<std::string> allowed);
+
+  // Any text but none; `allowed` says what is meant.
+  void text(std::string name, std::string& field, std::string help, std::string allowed);
 
   // Writes the values into the fields. Throws std::invalid_argument: unknown key (lists the known ones and the
   // nearest), not a number, outside the range; the message names solver, field, value and the violated relation.

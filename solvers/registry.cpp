@@ -9,9 +9,11 @@
 #include "solvers/ceres_solver.hpp"
 #include "solvers/cmaes.hpp"
 #include "solvers/coordinate_search.hpp"
+#include "solvers/differential_evolution.hpp"
 #include "solvers/genetic.hpp"
 #include "solvers/interior_point.hpp"
 #include "solvers/levenberg_marquardt.hpp"
+#include "solvers/multistart.hpp"
 #include "solvers/nlopt_solvers.hpp"
 #include "solvers/particle_swarm.hpp"
 
@@ -26,6 +28,8 @@ const std::vector<SolverEntry>& solver_registry() {
     rows.push_back(genetic_entry());
     rows.push_back(particle_swarm_entry());
     rows.push_back(cmaes_entry());
+    rows.push_back(differential_evolution_entry());
+    rows.push_back(multistart_entry());
     rows.push_back(coordinate_search_entry());
     rows.push_back(exact_search_entry());
     rows.push_back(relaxed_search_entry());

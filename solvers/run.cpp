@@ -105,6 +105,42 @@ std::string Run::stop_message() const {
   }
 }
 
+Run Run::local(const ConstVectorRef& start, std::int64_t most) {
+  Budget budget = budget_;
+  if (budget.max_evaluations > 0) budget.max_evaluations = std::max<std::int64_t>(1, evaluations_left());
+  if (most > 0)
+    budget.max_evaluations = budget.max_evaluations > 0 ? std::min(budget.max_evaluations, most) : most;
+  if (budget.max_seconds > 0) budget.max_seconds = std::max(1e-9, budget.max_seconds - seconds());
+  Observer observer;
+  if (observer_)
+    observer = [tell = observer_, evaluations = evaluations(), iterations = iterations_, seconds = seconds(),
+                best = best_cost_](const Progress& p) {
+      tell({evaluations + p.evaluations, iterations + p.iterations, seconds + p.seconds,
+            std::min(best, p.best_cost)});
+    };
+  return Run(problem_, budget, box_.to_parameters(start), random_.engine()(), interrupt_, std::move(observer),
+             threads_);
+}
+
+void Run::absorb(const Run& local) {
+  const std::int64_t before = evaluations();
+  const double began = seconds() - local.seconds();
+  problem_.count(local.counts());
+  iterations_ += local.iterations_;
+  non_finite_ += local.non_finite_;
+  for (const TraceEntry& entry : local.trace_) {
+    if (!(entry.cost < best_cost_)) continue;
+    best_cost_ = entry.cost;
+    trace_.push_back({before + entry.evaluations, began + entry.seconds, entry.cost});
+    if (trace_.size() > kTraceLimit) thin(trace_);
+  }
+  if (local.best_cost_ <= best_cost_ && local.has_best()) {  // its trace ends with its best
+    best_cost_ = local.best_cost_;
+    best_ = local.best_;
+    best_parameters_ = local.best_parameters_;
+  }
+}
+
 void Run::restart_from_best(const Budget& budget) {
   budget_ = budget;
   start_ = best_;

@@ -104,6 +104,11 @@ class Run {
   Termination stop_reason() const { return stop_reason_; }
   std::string stop_message() const;
 
+  // A run of its own from `start` (unit coordinates), of at most `most` evaluations (0: no limit but this run's) and within
+  // what this run has left. What it did counts here once absorb() has taken it in.
+  Run local(const ConstVectorRef& start, std::int64_t most);
+  void absorb(const Run& local);
+
   // Begins a following phase (polish) at the best point: start() is the best point, the budget is replaced, counts,
   // clock, trace and best go on; a stop for evaluations or time is reconsidered.
   void restart_from_best(const Budget& budget);

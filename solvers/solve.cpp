@@ -25,10 +25,11 @@ Outcome run_phase(const Solver& solver, Run& run) {
   } catch (const std::exception& error) {
     outcome = {Termination::Failed, error.what()};
   }
-  if (run.stop_reason() != Termination::NotStarted) return {run.stop_reason(), run.stop_message()};
+  if (run.stop_reason() != Termination::NotStarted)
+    return {run.stop_reason(), run.stop_message(), false, std::move(outcome.optima)};
   // A target met by the last evaluation of a method that then ended by itself.
   if (run.has_best() && run.best_cost() <= run.budget().target_cost && run.stop())
-    return {run.stop_reason(), run.stop_message()};
+    return {run.stop_reason(), run.stop_message(), false, std::move(outcome.optima)};
   return outcome;
 }
 
@@ -87,10 +88,11 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
     const Outcome polish = run_phase(*polisher, run);
     outcome = {polish.termination,
                fmt::format("{}; polished by {}: {}", outcome.message, options.polish.text(), polish.message),
-               polish.on_lattice};
+               polish.on_lattice, std::move(outcome.optima)};
   }
   result.termination = outcome.termination;
   result.message = outcome.message;
+  result.optima = outcome.optima;
   result.counts = run.counts();
   result.iterations = run.iterations();
   result.non_finite = run.non_finite();

@@ -33,6 +33,9 @@ struct Result {
   // Of the returned point; absent where the problem has no derivatives and after an interruption or a failure.
   std::optional<OptimalityCheck> check;
 
+  // Distinct optima, the lowest first, of a method that starts many times.
+  std::vector<LocalOptimum> optima;
+
   bool usable() const { return x.size() > 0; }
   std::string brief() const;  // "lm: 98.1187829 after 30 evaluations, 0.04 s, converged: ..."
   std::string full() const;   // several lines, with the parameters

@@ -14,11 +14,20 @@ namespace odobench {
 
 // How the method itself ended: Settled by a tolerance of its own, Stalled without further progress, IterationLimit,
 // Failed. It never says Converged: solve() does, by its own test. When run.stop() holds the driver's reason replaces it.
+// One of several optima that a method has seen.
+struct LocalOptimum {
+  Vector x;  // parameter units
+  double cost = 0;
+  int runs = 0;  // local searches that ended there: their share is the basin's
+};
+
 struct Outcome {
   Termination termination = Termination::NotStarted;
   std::string message;  // one sentence with both numbers: "projected gradient 3e-11 <= 1e-10"
   // The answer is the best of admissible levels, about which derivatives say nothing.
   bool on_lattice = false;
+  // Distinct optima of a method that starts many times, the lowest first; else empty.
+  std::vector<LocalOptimum> optima = {};
 };
 
 class Solver {
