@@ -166,6 +166,8 @@ std::vector<Verb> add_writing_verbs(CLI::App& app, Arguments& a) {
   import->add_option("source", a.import.source, "vitko2024")->required();
   import->add_option("--from", a.import.from, "folder with the raw files")->required()->type_name("DIR");
   import->add_option("--out", a.import.out, "data set to write")->required()->type_name("SET.JSON");
+  import->add_flag("--drop-lost", a.import.drop_lost,
+                   "leave out captured samples whose tracking was lost, and count them");
   import->add_flag("--overwrite", a.import.overwrite, "replace a data set that is there");
   import->add_flag("--quiet", a.import.quiet, "no progress");
   add_json(*import, a.import.json);

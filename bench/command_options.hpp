@@ -95,6 +95,7 @@ struct ImportOptions {
   std::string from;
   std::string out;
   bool overwrite = false;
+  bool drop_lost = false;  // captured samples whose tracking was lost
   bool quiet = false;
   bool json = false;  // say on standard output what was written
 };

@@ -49,7 +49,7 @@ ExitCode import_command(const ImportOptions& options) {
                      .c_str(),
                  stderr);
   };
-  const Dataset dataset = import_vitko2024(options.from, progress);
+  const Dataset dataset = import_vitko2024(options.from, progress, 0, options.drop_lost);
   if (InterruptGuard::flag().load()) throw Interruption();
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);

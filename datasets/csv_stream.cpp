@@ -29,15 +29,12 @@ CsvStream::CsvStream(const std::filesystem::path& file, char separator, const st
     throw DataError(fmt::format("{}: cannot be read: {}", shown_name(file),
                                 std::error_code(errno, std::generic_category()).message()));
   try {
-    std::string_view line;
-    const bool any = take_line(line);
+    const bool any = take_header();
     if (interrupted_) return;
-    if (any && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
-    if (!any || (line.find_first_not_of(" \t") == std::string_view::npos && only_blank_lines_left())) {
+    if (!any) {
       line_ = 1;
       fail("found an empty file, expected a header line");
     }
-    take_header(line);
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -97,8 +94,12 @@ bool CsvStream::take_line(std::string_view& line) {
     }
     if (fill()) continue;
     if (interrupted_ || begin_ == end_) return false;
-    ++line_;  // a number cut in two would pass for another number
-    fail("found the end of the file inside the line, expected a line break");
+    unfinished_ = true;
+    line = {buffer_.data() + begin_, end_ - begin_};
+    begin_ = end_;
+    ++line_;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return true;
   }
 }
 
@@ -114,16 +115,19 @@ bool CsvStream::only_blank_lines_left() {
 }
 
 bool CsvStream::next() {
-  std::string_view line;
   if (interrupt_ != nullptr && interrupt_->load(std::memory_order_relaxed)) interrupted_ = true;
-  if (interrupted_ || !take_line(line)) return false;
-  if (line.empty()) {  // fill() may move the buffer, but this line has no bytes
-    const std::size_t here = line_;
-    if (only_blank_lines_left()) return false;
-    line_ = here;
-    line = {};
-  }
-  take_row(line);
+  if (interrupted_) return false;
+  if (take_waiting_row()) return true;
+  std::string_view line;
+  do {
+    if (!take_line(line)) return false;
+    if (line.empty()) {  // fill() may move the buffer, but this line has no bytes
+      const std::size_t here = line_;
+      if (only_blank_lines_left()) return false;
+      line_ = here;
+      line = {};
+    }
+  } while (!take_row(line));
   return true;
 }
 

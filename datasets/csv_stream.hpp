@@ -11,14 +11,14 @@
 
 namespace odobench {
 
-// Same rules as CsvTable: a carriage return before the line's end and blank lines at the end of the file are
-// ignored, a last line without a line break is refused. A byte order mark before the header is passed over.
+// Same rules as CsvTable: the dialect is found in the header (datasets/csv_dialect.hpp), a carriage return before the
+// line's end and blank lines at the end of the file are ignored, a last line without a line break must have all fields.
 class CsvStream : public CsvRow {
  public:
   // Longest line accepted [bytes]: what has no line break at all must not fill the memory.
   static constexpr std::size_t kLongestLine = 1 << 20;
 
-  // Opens the file ("-" is standard input) and reads the header line. Throws DataError when it cannot be read
+  // `separator`: where the header has none. Opens the file ("-" is standard input) and reads the header line. Throws DataError when it cannot be read
   // or is empty. Once `interrupt` (may be null) is set, the file ends as soon as the rows already read are used up,
   // also while a pipe delivers nothing (before the header: without columns).
   CsvStream(const std::filesystem::path& file, char separator, const std::atomic<bool>* interrupt = nullptr);
@@ -33,7 +33,7 @@ class CsvStream : public CsvRow {
 
  private:
   // The next line without its break in `line`; false at the end of the file.
-  bool take_line(std::string_view& line);
+  bool take_line(std::string_view& line) override;
   bool fill();
   bool only_blank_lines_left();
 

@@ -37,10 +37,10 @@ void ColumnFinder::missing(const std::string& name, const std::string& purpose) 
     if (!column.empty() && std::find(known_.begin(), known_.end(), column) == known_.end())
       others.push_back(column);
   const std::string near = nearest_ == nullptr ? "" : nearest_(name, others);
-  throw DataError(fmt::format("{}:1: found no column \"{}\"{}{}, expected it among the {} of the header",
-                              row_.file(), name, purpose.empty() ? "" : fmt::format(" (for {})", purpose),
-                              near.empty() ? "" : fmt::format("; the nearest is \"{}\"", near),
-                              row_.names().size()));
+  throw DataError(fmt::format(
+      "{}:{}: found no column \"{}\"{}{}, expected it among the {} of the header{}", row_.file(),
+      row_.header_line(), name, purpose.empty() ? "" : fmt::format(" (for {})", purpose),
+      near.empty() ? "" : fmt::format("; the nearest is \"{}\"", near), row_.names().size(), row_.reading()));
 }
 
 }  // namespace odobench

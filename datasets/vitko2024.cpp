@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -20,8 +21,9 @@ namespace odobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kRecordings = 30;
+constexpr int kPublishedRecordings = 30;
 constexpr int kRepetitions = 5;
+constexpr int kMostPairs = 100000;
 // How far the wheel signals may be inter- and extrapolated: more means that the log has a hole, that a clock
 // was set, or that the two files do not belong together.
 constexpr std::int64_t kLongestGap_us = 1'000'000;
@@ -59,37 +61,72 @@ Sums read_sums(const fs::path& folder) {
   return sums;
 }
 
+// How many pairs abs_1, odom_1, ... there are. A folder without any is taken for the published one, so that the first
+// missing file is named.
+int count_pairs(const fs::path& folder, const Sums& sums) {
+  int last = 0;
+  const auto consider = [&](const std::string& name) {
+    for (const std::string_view kind : {"abs_", "odom_"}) {
+      if (name.rfind(kind, 0) != 0 || name.size() < kind.size() + 5 || name.substr(name.size() - 4) != ".csv")
+        continue;
+      const std::string digits = name.substr(kind.size(), name.size() - kind.size() - 4);
+      int number = 0;
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      if (error == std::errc() && end == digits.data() + digits.size() && number <= kMostPairs)
+        last = std::max(last, number);
+    }
+  };
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    consider(entry.path().filename().string());
+  for (const auto& [name, entry] : sums.entries) consider(name);
+  return last > 0 ? last : kPublishedRecordings;
+}
+
 // What became of one pair of files.
 struct Pair {
   Recording recording;
   SourceFile capture, wheels;
   std::size_t moved_capture = 0, moved_wheels = 0;
+  std::size_t lost = 0;
+  bool unfinished_capture = false, unfinished_wheels = false;
 };
 
 class Importer {
  public:
-  explicit Importer(const fs::path& folder)
+  Importer(const fs::path& folder, bool drop_lost)
       : folder_(!fs::exists(folder / "abs_1.csv") && fs::exists(folder / "dataset" / "abs_1.csv")
                     ? folder / "dataset"
                     : folder),
         sums_(read_sums(folder_)),
-        trajectories_(trajectories_4wis4wid()) {}
+        count_(count_pairs(folder_, sums_)),
+        drop_lost_(drop_lost),
+        trajectories_(count_ == kPublishedRecordings ? trajectories_4wis4wid()
+                                                     : std::vector<Trajectory>{{"drive", "drive"}}) {}
 
-  Pair import(int number) const {  // 1 to 30
+  int count() const { return count_; }
+  const std::vector<Trajectory>& trajectories() const { return trajectories_; }
+
+  Pair import(int number) const {  // 1 to count()
     Pair pair;
     const std::string capture_file = file("abs", number), wheel_file = file("odom", number);
-    vitko2024::CaptureLog capture = vitko2024::parse_capture(load("abs", number, pair.capture), capture_file);
+    vitko2024::CaptureLog capture =
+        vitko2024::parse_capture(load("abs", number, pair.capture), capture_file, drop_lost_);
     vitko2024::WheelLog wheels = vitko2024::parse_wheels(load("odom", number, pair.wheels), wheel_file);
-    require_rows(capture.time_us, vitko2024::kDroppedSamples + 2, capture_file);
-    require_rows(wheels.time_us, 2, wheel_file);
-    pair.moved_capture = increase(capture.time_us, capture_file);
-    pair.moved_wheels = increase(wheels.time_us, wheel_file);
+    require_rows(capture.lines, vitko2024::kDroppedSamples + 2, capture_file);
+    require_rows(wheels.lines, 2, wheel_file);
+    pair.lost = capture.lost;
+    pair.unfinished_capture = capture.lines.unfinished;
+    pair.unfinished_wheels = wheels.lines.unfinished;
+    pair.moved_capture = increase(capture.time_us, capture.lines, capture_file);
+    pair.moved_wheels = increase(wheels.time_us, wheels.lines, wheel_file);
     require_cover(capture, wheels, wheel_file);
 
     Recording& r = pair.recording;
     r = vitko2024::join(std::move(capture), wheels);
-    r.trajectory = trajectories_[static_cast<std::size_t>((number - 1) / kRepetitions)].name;
-    r.repetition = 1 + (number - 1) % kRepetitions;
+    const int repetitions = trajectories_.size() == 1 ? count_ : kRepetitions;
+    r.trajectory = trajectories_[static_cast<std::size_t>((number - 1) / repetitions)].name;
+    r.repetition = 1 + (number - 1) % repetitions;
     r.id = fmt::format("{}_{}", r.trajectory, r.repetition);
     return pair;
   }
@@ -112,19 +149,19 @@ class Importer {
     return bytes;
   }
 
-  static void require_rows(const std::vector<std::int64_t>& stamps, std::size_t least,
-                           const std::string& file) {
-    if (stamps.size() < least)
+  static void require_rows(const vitko2024::RowLines& lines, std::size_t least, const std::string& file) {
+    if (lines.rows.size() < least)
       throw DataError(fmt::format("{}:{}: found the end of the file after {} rows, expected at least {}",
-                                  file, vitko2024::line_of_row(stamps.size()), stamps.size(), least));
+                                  file, lines.end(), lines.rows.size(), least));
   }
 
-  static std::size_t increase(std::vector<std::int64_t>& stamps, const std::string& file) {
+  static std::size_t increase(std::vector<std::int64_t>& stamps, const vitko2024::RowLines& lines,
+                              const std::string& file) {
     const StampRepair repair = make_increasing(stamps);
     if (repair.fault < stamps.size())
       throw DataError(fmt::format(
           "{}:{}: found a stamp {} us before the one above it, expected a later one (up to {} us are mended)",
-          file, vitko2024::line_of_row(repair.fault), stamps[repair.fault - 1] - stamps[repair.fault],
+          file, lines.rows[repair.fault], stamps[repair.fault - 1] - stamps[repair.fault],
           kLargestBackstep_us));
     return repair.moved;
   }
@@ -135,29 +172,32 @@ class Importer {
     const std::int64_t early = capture.time_us.back() - wheels.time_us.back();
     for (std::size_t k = 1; k < wheels.time_us.size(); ++k)
       if (wheels.time_us[k] - wheels.time_us[k - 1] > kLongestGap_us)
-        throw DataError(fmt::format(
-            "{}:{}: found a stamp {} us after the one above it, expected at most {} us", file,
-            vitko2024::line_of_row(k), wheels.time_us[k] - wheels.time_us[k - 1], kLongestGap_us));
+        throw DataError(
+            fmt::format("{}:{}: found a stamp {} us after the one above it, expected at most {} us", file,
+                        wheels.lines.rows[k], wheels.time_us[k] - wheels.time_us[k - 1], kLongestGap_us));
     if (late > kLongestGap_us)
       throw DataError(
           fmt::format("{}:{}: found a first stamp {} us after the motion capture's, expected at most {} us",
-                      file, vitko2024::line_of_row(0), late, kLongestGap_us));
+                      file, wheels.lines.rows.front(), late, kLongestGap_us));
     if (early > kLongestGap_us)
       throw DataError(
           fmt::format("{}:{}: found a last stamp {} us before the motion capture's, expected at most {} us",
-                      file, vitko2024::line_of_row(wheels.time_us.size() - 1), early, kLongestGap_us));
+                      file, wheels.lines.rows.back(), early, kLongestGap_us));
   }
 
   fs::path folder_;
   Sums sums_;
+  int count_;
+  bool drop_lost_;
   std::vector<Trajectory> trajectories_;
 };
 
 // Imports all pairs on several threads. Pairs are handed out in ascending order and begun ones are finished,
 // so that the error reported is that of the lowest number, whatever the threads do.
 std::vector<Pair> import_pairs(const Importer& importer, const ImportProgress& progress, int threads) {
-  std::vector<Pair> pairs(kRecordings);
-  std::vector<std::exception_ptr> errors(kRecordings);
+  const int count = importer.count();
+  std::vector<Pair> pairs(static_cast<std::size_t>(count));
+  std::vector<std::exception_ptr> errors(static_cast<std::size_t>(count));
   std::exception_ptr interruption;
   std::atomic<int> next{0};
   std::atomic<bool> stop{false};
@@ -166,7 +206,7 @@ std::vector<Pair> import_pairs(const Importer& importer, const ImportProgress& p
   const auto work = [&] {
     while (!stop) {
       const int index = next++;
-      if (index >= kRecordings) return;
+      if (index >= count) return;
       try {
         pairs[static_cast<std::size_t>(index)] = importer.import(index + 1);
       } catch (...) {
@@ -177,7 +217,7 @@ std::vector<Pair> import_pairs(const Importer& importer, const ImportProgress& p
       if (!progress) continue;
       const std::lock_guard lock(progress_mutex);
       try {
-        if (!stop) progress(++done, kRecordings);
+        if (!stop) progress(++done, count);
       } catch (...) {
         interruption = std::current_exception();
         stop = true;
@@ -186,9 +226,9 @@ std::vector<Pair> import_pairs(const Importer& importer, const ImportProgress& p
   };
   {
     const unsigned machine = std::max(1u, std::thread::hardware_concurrency());
-    const int count = std::min(threads > 0 ? threads : static_cast<int>(machine), kRecordings);
+    const int workers = std::min(threads > 0 ? threads : static_cast<int>(machine), count);
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < count; ++i) helpers.emplace_back(work);
+    for (int i = 1; i < workers; ++i) helpers.emplace_back(work);
     work();
   }
   for (const std::exception_ptr& error : errors)
@@ -246,27 +286,40 @@ void describe_published(Dataset& d) {
 }
 
 void describe_others(Dataset& d) {
-  d.description =
-      "30 drives in the layout of the recordings published with J. Vitko's thesis, which they are not";
+  d.description = fmt::format(
+      "{} drives in the layout of the recordings published with J. Vitko's thesis, which they are not",
+      d.recordings.size());
   d.provenance.source = "unknown: files in that layout whose sums are not the published ones";
   d.provenance.licence = "unknown";
 }
 
 }  // namespace
 
-Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress, int threads) {
+Dataset import_vitko2024(const fs::path& folder, const ImportProgress& progress, int threads,
+                         bool drop_lost) {
   std::error_code unreadable;
   if (!fs::is_directory(folder, unreadable))
     throw DataError(fmt::format("{}: found no such folder, expected one with abs_1.csv ... odom_30.csv",
                                 folder.string()));
-  std::vector<Pair> pairs = import_pairs(Importer(folder), progress, threads);
+  const Importer importer(folder, drop_lost);
+  std::vector<Pair> pairs = import_pairs(importer, progress, threads);
 
   Dataset d;
   d.name = "vitko2024";
   d.robot = robot_4wis4wid();
-  d.trajectories = trajectories_4wis4wid();
+  d.trajectories = importer.trajectories();
   d.provenance.made_by = "bench import vitko2024";
+  if (importer.count() != kPublishedRecordings)
+    d.notes.push_back(fmt::format("{} pairs of files, not {}: they count as repetitions of one trajectory",
+                                  importer.count(), kPublishedRecordings));
   for (Pair& pair : pairs) {
+    if (pair.lost > 0)
+      d.notes.push_back(fmt::format("{} samples whose tracking was lost left out of recording {} ({})",
+                                    pair.lost, pair.recording.id, pair.capture.path));
+    for (const auto& [unfinished, file] :
+         {std::pair{pair.unfinished_capture, &pair.capture}, std::pair{pair.unfinished_wheels, &pair.wheels}})
+      if (unfinished)
+        d.notes.push_back(fmt::format("{} ends without a line break: its last row may be cut", file->path));
     const auto note = [&](std::size_t moved, const SourceFile& file) {
       if (moved > 0)
         d.notes.push_back(fmt::format("{} stamps moved to 1 us after their predecessor in recording {} ({})",

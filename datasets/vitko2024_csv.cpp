@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "datasets/csv_table.hpp"
 
@@ -130,27 +132,67 @@ bool parse_time(std::string_view text, std::int64_t& time_us) {
   return true;
 }
 
-CaptureLog parse_capture(std::string_view text, const std::string& file) {
+namespace {
+
+bool is_nan(std::string_view field) {
+  return field.size() == 3 && (field[0] | 0x20) == 'n' && (field[1] | 0x20) == 'a' &&
+         (field[2] | 0x20) == 'n';
+}
+
+// The columns of a pose.
+struct PoseColumns {
+  std::size_t x, y, qx, qy, qz, qw;
+};
+
+struct CapturedPose {
+  double x, y, yaw;
+};
+
+// Nothing where the tracking was lost and such samples are to be left out.
+std::optional<CapturedPose> captured_pose(const CsvTable& row, const PoseColumns& at, bool drop_lost) {
+  const auto fields = {at.x, at.y, at.qx, at.qy, at.qz, at.qw};
+  if (drop_lost &&
+      std::any_of(fields.begin(), fields.end(), [&](std::size_t c) { return is_nan(row.field(c)); }))
+    return std::nullopt;
+  const double x = row.number(at.x), y = row.number(at.y);
+  const double i = row.number(at.qx), j = row.number(at.qy), k = row.number(at.qz), w = row.number(at.qw);
+  const double norm = std::sqrt(i * i + j * j + k * k + w * w);
+  if (std::abs(norm - 1) <= kNormTolerance)
+    return CapturedPose{x, y, std::atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k))};
+  if (drop_lost) return std::nullopt;
+  row.fail(fmt::format(
+      "found an orientation quaternion of norm {:.4g}, expected 1 (within {}); --drop-lost leaves "
+      "out samples whose tracking was lost",
+      norm, kNormTolerance));
+}
+
+}  // namespace
+
+CaptureLog parse_capture(std::string_view text, const std::string& file, bool drop_lost) {
   CsvTable row(text, file, kSeparator);
-  const std::size_t time = row.column("time"), x = row.column(".pose.position.x"),
-                    y = row.column(".pose.position.y");
-  const std::size_t qx = row.column(".pose.orientation.x"), qy = row.column(".pose.orientation.y"),
-                    qz = row.column(".pose.orientation.z"), qw = row.column(".pose.orientation.w");
+  const std::size_t time = row.column("time");
+  const PoseColumns pose{row.column(".pose.position.x"),    row.column(".pose.position.y"),
+                         row.column(".pose.orientation.x"), row.column(".pose.orientation.y"),
+                         row.column(".pose.orientation.z"), row.column(".pose.orientation.w")};
   CaptureLog log;
   const std::size_t rows = row.rows_left_at_most();
   log.time_us.reserve(rows);
   for (auto* values : {&log.x, &log.y, &log.yaw}) values->reserve(rows);
   while (row.next()) {
-    log.time_us.push_back(time_of(row, time));
-    log.x.push_back(row.number(x));
-    log.y.push_back(row.number(y));
-    const double i = row.number(qx), j = row.number(qy), k = row.number(qz), w = row.number(qw);
-    const double norm = std::sqrt(i * i + j * j + k * k + w * w);
-    if (!(std::abs(norm - 1) <= kNormTolerance))
-      row.fail(fmt::format("found an orientation quaternion of norm {:.4g}, expected 1 (within {})", norm,
-                           kNormTolerance));
-    log.yaw.push_back(std::atan2(2 * (w * k + i * j), 1 - 2 * (j * j + k * k)));
+    const std::int64_t stamp = time_of(row, time);
+    const std::optional<CapturedPose> seen = captured_pose(row, pose, drop_lost);
+    if (!seen) {
+      ++log.lost;
+      continue;
+    }
+    log.time_us.push_back(stamp);
+    log.lines.rows.push_back(row.line());
+    log.x.push_back(seen->x);
+    log.y.push_back(seen->y);
+    log.yaw.push_back(seen->yaw);
   }
+  log.lines.header = row.header_line();
+  log.lines.unfinished = row.unfinished();
   return log;
 }
 
@@ -165,11 +207,12 @@ WheelLog parse_wheels(std::string_view text, const std::string& file) {
     log.steering[i].reserve(rows);
     log.wheel_speed[i].reserve(rows);
   }
-  std::string_view mapped_names;  // the names of the row that map was made for
+  std::string mapped_names;  // the names of the row that map was made for
   WheelMap map;
   std::vector<double> values;
   while (row.next()) {
     log.time_us.push_back(time_of(row, time));
+    log.lines.rows.push_back(row.line());
     if (row.field(names) != mapped_names || mapped_names.empty()) {
       map = map_names(row, names);
       mapped_names = row.field(names);
@@ -179,6 +222,8 @@ WheelLog parse_wheels(std::string_view text, const std::string& file) {
     read_list(row, velocity, map.entries, values);
     for (std::size_t i = 0; i < kWheelCount; ++i) log.wheel_speed[i].push_back(values[map.wheel[i]]);
   }
+  log.lines.header = row.header_line();
+  log.lines.unfinished = row.unfinished();
   return log;
 }
 

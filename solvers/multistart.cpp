@@ -175,6 +175,7 @@ Outcome Multistart::minimise(Run& run) const {
             ? static_cast<std::int64_t>(std::ceil(options_.effort * static_cast<double>(run.evaluations())))
             : 0;
   }
+  run.stop();  // a budget that the last search used up is why it ended
   Outcome result;
   if (optima) result.optima = optima->list();
   result.termination = lowest_settled ? Termination::Settled : Termination::Stalled;

@@ -51,7 +51,7 @@ TEST(CsvStream, Refuses) {
   };
   EXPECT_TRUE(says(error(""), {"a.csv:1: found an empty file, expected a header line"}));
   EXPECT_TRUE(says(error("\n\n"), {"a.csv:1: found an empty file"}));
-  EXPECT_TRUE(says(error("a,b\n1,2\n3,4"), {"a.csv:3: found the end of the file inside the line"}));
+  EXPECT_TRUE(says(error("a,b\n1,2\n3"), {"a.csv:3: found the end of the file inside the line"}));
   EXPECT_TRUE(says(error("a,b\n1,2\n3\n"), {"a.csv:3: found 1 fields, expected 2"}));
   EXPECT_TRUE(says(error("a,b\n1,2\n\n3,4\n"), {"a.csv:3: found 1 fields, expected 2"}));
   EXPECT_TRUE(says(error("a\n1\n" + std::string(3 << 20, '7')), {"a.csv:3: found a line longer than"}));
@@ -211,7 +211,7 @@ TEST(FilterRun, Refuses) {
                    {"run.csv:10: found the end of the file after 9 rows, expected at least 10"}));
   EXPECT_TRUE(
       says(data_error([&] { read_run(plain_run(1), options); }), {"after 1 rows, expected at least 10"}));
-  EXPECT_TRUE(says(data_error([&] { read_run(run.substr(0, run.size() - 3), options); }),
+  EXPECT_TRUE(says(data_error([&] { read_run(run.substr(0, run.rfind(',')), options); }),
                    {"run.csv:13: found the end of the file inside the line"}));
   options.columns = {{"enc1_m", "wheel"}};
   EXPECT_TRUE(says(data_error([&] { read_run(run, options); }), {"found no column \"wheel\" (for enc1_m)"}));

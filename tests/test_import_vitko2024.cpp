@@ -1,6 +1,7 @@
 // Import of the raw files: on sixty small made-up files for what the published ones do not show (other column
 // orders, ties of stamps, everything broken), and on the published ones against an independent evaluation.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -185,6 +186,60 @@ TEST(ImportVitko2024, TakesACloneAndWindowsLineEnds) {
   EXPECT_EQ(import_vitko2024(clone.path()).recordings[0].theta, plain.recordings[0].theta);
 }
 
+TEST(ImportVitko2024, OtherNumbersOfPairsAreDrivesOfOneTrajectory) {
+  const RawFolder raw;
+  for (int i = 6; i <= 30; ++i) {
+    fs::remove(raw.path() / fmt::format("abs_{}.csv", i));
+    fs::remove(raw.path() / fmt::format("odom_{}.csv", i));
+  }
+  const Dataset set = import_vitko2024(raw.path());
+  ASSERT_EQ(set.recordings.size(), 5u);
+  ASSERT_EQ(set.trajectories.size(), 1u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(set.recordings[i].trajectory, "drive");
+    EXPECT_EQ(set.recordings[i].repetition, static_cast<int>(i) + 1);
+    EXPECT_EQ(set.recordings[i].id, fmt::format("drive_{}", i + 1));
+  }
+  EXPECT_THAT(set.notes, ::testing::Contains(::testing::HasSubstr("5 pairs of files, not 30")));
+  EXPECT_EQ(set.provenance.source.find("Vitko"), std::string::npos) << set.provenance.source;
+  EXPECT_TRUE(set.known_parameters.empty());
+  EXPECT_NE(set.description.find("5 drives"), std::string::npos);
+  // A gap is no smaller number.
+  fs::remove(raw.path() / "odom_3.csv");
+  EXPECT_TRUE(says(data_error([&] { import_vitko2024(raw.path()); }), {"odom_3.csv", "cannot be read"}));
+}
+
+TEST(ImportVitko2024, DropsLostSamplesWhereAsked) {
+  const RawFolder raw;
+  const std::string good = read_file(raw.path() / "abs_2.csv");
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < good.size();) {
+    const std::size_t end = good.find('\n', at);
+    lines.push_back(good.substr(at, end - at));
+    at = end + 1;
+  }
+  // The last four fields of line 34 are the quaternion.
+  std::string& row = lines.at(33);
+  std::size_t cut = row.size();
+  for (int i = 0; i < 4; ++i) cut = row.rfind(';', cut - 1);
+  const std::string kept = row;
+  row = row.substr(0, cut) + ";0;0;0;0";
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  raw.file("abs_2.csv", text);
+  EXPECT_TRUE(says(data_error([&] { import_vitko2024(raw.path()); }),
+                   {"abs_2.csv:34: found an orientation quaternion of norm 0", "--drop-lost"}));
+  const Dataset set = import_vitko2024(raw.path(), {}, 0, true);
+  EXPECT_EQ(set.recordings[1].size() + 1, set.recordings[0].size());
+  EXPECT_THAT(set.notes, ::testing::Contains(::testing::HasSubstr(
+                             "1 samples whose tracking was lost left out of recording line_x_2")));
+  row = kept.substr(0, cut) + ";nan;nan;nan;nan";
+  text.clear();
+  for (const std::string& line : lines) text += line + "\n";
+  raw.file("abs_2.csv", text);
+  EXPECT_EQ(import_vitko2024(raw.path(), {}, 0, true).recordings[1].size() + 1, set.recordings[0].size());
+}
+
 TEST(ImportVitko2024, MendsTiesOfStampsAndCountsThem) {
   const RawFolder raw;
   // Rows 31 and 32 with the stamp of row 30, row 33 a little before it.
@@ -292,11 +347,13 @@ TEST(ImportVitko2024, RefusesMissingAndShortFiles) {
                    {"abs_3.csv:1: found an empty file, expected a header line"}));
   EXPECT_TRUE(
       says(raw.error_of("odom_3.csv", lines(2)), {"odom_3.csv:3: found the end of the file after 1 rows"}));
-  const auto cut = [](const std::string& text) { return text.substr(0, text.size() - 3); };
+  const auto cut = [](const std::string& text) { return text.substr(0, text.rfind(';')); };
   EXPECT_TRUE(
       says(raw.error_of("abs_3.csv", cut), {"abs_3.csv:36: found the end of the file inside the line"}));
   EXPECT_TRUE(
       says(raw.error_of("odom_3.csv", cut), {"odom_3.csv:31: found the end of the file inside the line"}));
+  const auto unbroken = [](const std::string& text) { return text.substr(0, text.size() - 1); };
+  EXPECT_EQ(raw.error_of("abs_3.csv", unbroken), "");
   fs::remove(raw.path() / "odom_12.csv");
   EXPECT_TRUE(says(data_error([&] { import_vitko2024(raw.path()); }),
                    {"odom_12.csv: cannot be read", "No such file"}));

@@ -123,6 +123,7 @@ TEST_P(Required, OnTheRealRecordings) {
 
 INSTANTIATE_TEST_SUITE_P(Population, Required,
                          ::testing::Values(Requirement{"cmaes", 30000, 1e-6, 9},
+                                           Requirement{"de", 30000, 1e-6, 9},
                                            Requirement{"ga", 50000, 1e-2, 8},
                                            Requirement{"pso", 50000, 1e-2, 8}),
                          [](const auto& parameter) { return parameter.param.solver; });
@@ -142,7 +143,7 @@ TEST(Population, PolishedRunsEndAtTheOptimumOfTheRealRecordings) {
 }
 
 TEST(Population, BoundsAndRotatedValleysOfTheClassics) {
-  for (const char* solver : {"cmaes[restarts=0]", "ga", "pso"}) {
+  for (const char* solver : {"cmaes[restarts=0]", "ga", "pso", "de[evaluations=60000]"}) {
     EXPECT_LE(run_on(make_classic_problem("ellipsoid", 8), solver, 5).cost, 1e-15) << solver;
     EXPECT_LE(run_on(make_classic_problem("rosenbrock", 6), solver, 5).cost, 1e-15) << solver;
     const Problem corner = make_classic_problem("corner", 8);
@@ -161,7 +162,7 @@ TEST(Population, OneParameterIsEnough) {
     double cost(const ConstVectorRef& x) const { return 3 + (x[0] - 1.75) * (x[0] - 1.75); }
   };
   for (const char* solver :
-       {"cmaes", "ga", "pso", "coordinate", "pso[variant=matlab]", "ga[variant=thesis,crossover=0]"})
+       {"cmaes", "ga", "pso", "de", "coordinate", "pso[variant=matlab]", "ga[variant=thesis,crossover=0]"})
     EXPECT_NEAR(run_on(Problem(Parabola{}), solver, 2, 20000).cost, 3.0, 1e-3) << solver;
 }
 
