@@ -12,6 +12,7 @@
 #include "bench/compare_command.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
+#include "bench/faults.hpp"
 #include "bench/filter_arguments.hpp"
 #include "bench/filter_command.hpp"
 #include "bench/fusion_arguments.hpp"
@@ -45,7 +46,7 @@ constexpr const char* kExamples = R"(Examples:
   bench compare results/old results/new --fail-on="J:+0.1%,evaluations:+50%"
 
 Without a verb bench runs solvers: 'bench run --help' lists those options.
-Exit codes: 0 done, 1 a check failed or no solver gave a result, 2 wrong usage, 3 wrong data, 130 interrupted.)";
+Exit codes: 0 done, 1 a check failed or no solver gave a result, 2 wrong usage, 3 wrong data, 70 a fault of the program, 130 interrupted.)";
 
 constexpr const char* kRunExamples = R"(Examples:
   bench --solver=lm --data=set.json
@@ -368,14 +369,12 @@ int fail(ExitCode code, std::string message) {
 }  // namespace
 
 int bench_main(int argc, char** argv) {
+  announce_crashes();
   try {
     return static_cast<int>(dispatch(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));
-  } catch (const Interruption&) {
-    return fail(ExitCode::Interrupted, "interrupted; nothing was written");
-  } catch (const std::invalid_argument& error) {
-    return fail(ExitCode::Usage, error.what());
-  } catch (const std::exception& error) {
-    return fail(ExitCode::Data, error.what());
+  } catch (...) {
+    const Ending ending = ending_of(std::current_exception());
+    return fail(ending.code, ending.message);
   }
 }
 

@@ -10,6 +10,7 @@ enum class ExitCode : int {
   CheckFailed = 1,  // `bench check` found a difference, or not one solver of `bench run` gave a result
   Usage = 2,  // the command line, a configuration file or an output place is wrong (std::invalid_argument)
   Data = 3,   // a data set, record or parameter file is wrong (DataError, std::runtime_error)
+  Internal = 70,     // something that nobody foresaw: a fault of the program (EX_SOFTWARE)
   Interrupted = 130  // SIGINT or SIGTERM; what was complete is kept
 };
 

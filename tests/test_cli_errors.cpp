@@ -268,5 +268,42 @@ TEST(CliErrors, AKilledProcessLosesNoCompletedRun) {
   EXPECT_EQ(run_bench({"report", (folder / "out").string()}).exit_code, 0);
 }
 
+// A fault of the program is not called wrong data.
+TEST(CliErrors, TooLittleMemoryIsAnInternalFault) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers reserve more address space than any limit";
+#endif
+  const TemporaryFolder folder;
+  std::string text = "{\"a\": [";
+  for (int i = 0; i < 3000000; ++i) text += "[1],";
+  const std::string data = folder.file("big.json", text + "1]}");
+  for (const char* kilobytes :
+       {"150000", "200000", "250000"}) {  // where memory ends: in a parser, a container, a destructor
+    const std::string command = std::string("ulimit -v ") + kilobytes + "; exec '" + bench_words({}).front() +
+                                "' evaluate --data='" + data + "'";
+    const ProcessResult result = Process({"/bin/sh", "-c", command}).wait();
+    EXPECT_EQ(result.exit_code, 70) << kilobytes << ": signal " << result.signal;
+    EXPECT_EQ(lines(result.err).size(), 1u) << result.err;
+    EXPECT_THAT(result.err, StartsWith("bench: error: internal fault: no memory is left"));
+    EXPECT_THAT(result.err, HasSubstr("please report it"));
+  }
+}
+
+TEST(CliErrors, ACrashSaysWhatToDoAndKeepsItsSignal) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers have handlers of their own";
+#endif
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE}) {
+    const TemporaryFolder folder;
+    Process bench(long_run(folder / "out"));
+    ASSERT_TRUE(wait_for_lines(folder / "out/runs.jsonl", 2));
+    bench.send(signal);
+    const ProcessResult result = bench.wait();
+    EXPECT_EQ(result.signal, signal);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("bench: error: internal fault: the program was ended by SIG"),
+                                  HasSubstr("please report it")));
+  }
+}
+
 }  // namespace
 }  // namespace odobench
