@@ -51,6 +51,28 @@ std::map<std::string, double> budget_figures(const Budget& budget) {
   return figures;
 }
 
+// Every optimum that a method of many starts has seen: series optima.cost, optima.runs and optima.parameters (row by row), and
+// a note.
+void describe_optima(const std::vector<LocalOptimum>& optima, RunRecord& record) {
+  if (optima.empty()) return;
+  constexpr std::size_t kNamed = 10;
+  int runs = 0;
+  for (const LocalOptimum& o : optima) runs += o.runs;
+  std::string list;
+  for (std::size_t k = 0; k < optima.size(); ++k) {
+    const LocalOptimum& o = optima[k];
+    record.series["optima.cost"].push_back(o.cost);
+    record.series["optima.runs"].push_back(o.runs);
+    for (const double value : o.x) record.series["optima.parameters"].push_back(value);
+    if (k < kNamed)
+      list += fmt::format("{}{:.10g} ({} of {} searches, {:.0f} %)", list.empty() ? "" : ", ", o.cost, o.runs,
+                          runs, 100.0 * o.runs / runs);
+  }
+  if (optima.size() > kNamed) list += fmt::format(" and {} more", optima.size() - kNamed);
+  record.notes.push_back(fmt::format(
+      "{}: distinct optima by J and the share of the searches that ended there: {}.", record.label, list));
+}
+
 RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
   RunRecord record;
   record.problem = loaded.problem.name();
@@ -92,6 +114,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
       if (!note.empty()) record.notes.push_back(note);
     }
   }
+  describe_optima(result.optima, record);
   record.cost_before_polish = result.cost_before_polish;
   record.evaluations = result.counts.total();
   record.cost_evaluations = result.counts.cost;

@@ -16,7 +16,6 @@
 #include <sstream>
 #include <thread>
 
-#include "datasets/file_io.hpp"
 #include "reports/record.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/filter_run_files.hpp"
@@ -284,30 +283,6 @@ TEST(CliFilter, BadDataLeavesNothing) {
                    c.parts);
     EXPECT_EQ(everything_in(folder.path()), std::vector<std::string>{"run.csv"});
   }
-}
-
-TEST(CliFilter, EveryDialectGivesTheSameNumbers) {
-  const TemporaryFolder folder;
-  const std::string plain = plain_run(40);
-  const auto filtered = [&](std::string text) {
-    const std::string data = folder.file("run.csv", text), out = (folder / "out.csv").string();
-    const ProcessResult run =
-        run_bench({"filter", "--quiet", "--data=" + data, "--out=" + out, "--overwrite"});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return read_file(out);
-  };
-  const std::string wanted = filtered(plain);
-  const auto with = [&](const std::string& comma, const std::string& point, const std::string& end) {
-    std::string text;
-    for (const char c : plain)
-      text += c == ',' ? comma : c == '.' ? point : c == '\n' ? end : std::string(1, c);
-    return text;
-  };
-  EXPECT_EQ(filtered(with(";", ",", "\n")), wanted);
-  EXPECT_EQ(filtered("\xEF\xBB\xBF" + with(";", ".", "\r\n")), wanted);
-  EXPECT_EQ(filtered("sep=\t\n" + with("\t", ",", "\n")), wanted);
-  EXPECT_EQ(filtered(with(", ", ".", "\n")), wanted);
-  EXPECT_EQ(filtered("# a robot's log\n" + plain.substr(0, plain.size() - 1)), wanted);
 }
 
 TEST(CliFilter, TooFewRowsOrHalfALine) {
