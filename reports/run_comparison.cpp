@@ -335,6 +335,7 @@ std::vector<std::string> unlike_rows(const ComparisonRow& before, const Comparis
   add_box(lines, label, a, b);
   add_parameters(lines, label, a, b);
   add_field(lines, "processor", a.context.cpu, b.context.cpu);
+  add_field(lines, "kernel", a.context.kernel, b.context.kernel);
   add_field(lines, "compiler", a.context.compiler, b.context.compiler);
   add_field(lines, "build", a.context.build_type, b.context.build_type);
   if (a.context.threads != b.context.threads)

@@ -129,7 +129,12 @@ void MultistartOptions::bind(OptionBinder& binder) {
 
 void MultistartOptions::validate() const {
   const SolverSpec spec = inner_spec(solver);
-  find_solver(spec.name).make(spec.options, nullptr);
+  try {
+    find_solver(spec.name).make(spec.options, nullptr);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("solver 'multistart': option solver={}; {}", solver, error.what()));
+  }
 }
 
 Multistart::Multistart(MultistartOptions options) : options_(std::move(options)) {

@@ -81,7 +81,7 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
   if (trimmed(inside).empty()) return spec;
   for (const std::string& item : split_outside_brackets(inside)) {
     const auto equals = item.find('=');
-    if (equals == std::string::npos || trimmed(item.substr(0, equals)).empty())
+    if (equals == std::string::npos || trimmed(item.substr(0, equals)).empty() || item.find('[') < equals)
       throw std::invalid_argument(
           fmt::format("solver '{}': option '{}'; expected name=value", spec.name, trimmed(item)));
     const std::string key = trimmed(item.substr(0, equals));

@@ -168,6 +168,14 @@ TEST(CompareRuns, TimesOfAnotherProcessorAreNotGatedUnlessAskedFor) {
   EXPECT_EQ(compare_runs(before, after, o).failures(), 1u);
 }
 
+TEST(CompareRuns, KernelsThatDifferAreNamed) {
+  std::vector<RunRecord> before = repeats(1, 0), after = repeats(1, 0);
+  for (RunRecord& r : after) r.context.kernel = "baseline";
+  EXPECT_TRUE(compare_runs(before, after, options({})).unlike.empty());  // older records do not say
+  for (RunRecord& r : before) r.context.kernel = "avx2";
+  EXPECT_THAT(compare_runs(before, after, options({})).unlike, ElementsAre("kernel baseline, was avx2"));
+}
+
 TEST(CompareRuns, ListsWhatOneSideHas) {
   std::vector<RunRecord> before{run_record("lm", 1), run_record("ga", 1)};
   std::vector<RunRecord> after{run_record("lm", 1), run_record("ip", 1)};
