@@ -20,9 +20,9 @@ namespace {
 // Hands out the cells in order and keeps the first exception.
 class Dispatcher {
  public:
-  Dispatcher(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
-             const std::atomic<bool>& interrupt, CellWatcher& watcher)
-      : problem_(problem),
+  Dispatcher(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
+             int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher)
+      : problems_(problems),
         cells_(cells),
         budget_(budget),
         threads_(threads),
@@ -57,15 +57,15 @@ class Dispatcher {
     options.threads = threads_;
     options.polish = cell.polish;
     options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
-    const Vector start = cell.random_start ? random_start(problem_, cell.start_seed) : problem_.start();
+    const Problem own = problems_[cell.problem];  // a copy has evaluation counts of its own
+    const Vector start = cell.random_start ? random_start(own, cell.start_seed) : own.start();
     const std::string begin = utc_now();
-    const Problem own = problem_;  // a copy has evaluation counts of its own
     const Result result = solve(own, cell.solver, start, options);
     if (result.termination == Termination::Interrupted && !result.usable()) return;  // as good as not begun
     watcher_.finished(index, result, begin);
   }
 
-  const Problem& problem_;
+  const std::vector<Problem>& problems_;
   const std::vector<RunCell>& cells_;
   const Budget& budget_;
   const int threads_;
@@ -81,6 +81,10 @@ class Dispatcher {
 
 std::string RunCell::label() const {
   return polish.name.empty() ? solver.text() : solver.text() + "+" + polish.text();
+}
+
+bool RunCell::draws_random_numbers() const {
+  return find_solver(solver.name).stochastic || (!polish.name.empty() && find_solver(polish.name).stochastic);
 }
 
 std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
@@ -128,9 +132,9 @@ std::vector<RunCell> plan_cells(const CellPlan& plan, std::vector<std::string>& 
   return cells;
 }
 
-void run_cells(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
-               const std::atomic<bool>& interrupt, CellWatcher& watcher) {
-  Dispatcher dispatcher(problem, cells, budget, threads, interrupt, watcher);
+void run_cells(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
+               int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher) {
+  Dispatcher dispatcher(problems, cells, budget, threads, interrupt, watcher);
   if (threads <= 1) {
     dispatcher.work();
   } else {

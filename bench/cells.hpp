@@ -12,13 +12,15 @@ namespace odobench {
 
 struct RunCell {
   SolverSpec solver;
-  SolverSpec polish;  // name "" means none
+  SolverSpec polish;        // name "" means none
+  std::size_t problem = 0;  // place in the list of problems that run_cells gets
   int repetition = 1;
   std::uint64_t seed = 0;
   std::uint64_t start_seed = 0;  // of a random start
   bool random_start = false;
 
-  std::string label() const;  // of its table row: "pso", "pso[swarm=60]+lm"
+  std::string label() const;          // of its table row: "pso", "pso[swarm=60]+lm"
+  bool draws_random_numbers() const;  // its solver or its polish; a random start apart
 };
 
 struct CellPlan {
@@ -55,7 +57,7 @@ class CellWatcher {
 // have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins, and one
 // that had not evaluated anything is not reported. After an
 // exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
-void run_cells(const Problem& problem, const std::vector<RunCell>& cells, const Budget& budget, int threads,
-               const std::atomic<bool>& interrupt, CellWatcher& watcher);
+void run_cells(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
+               int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher);
 
 }  // namespace odobench

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 
 #include "bench/records.hpp"
@@ -10,18 +11,28 @@
 #include "bench/written.hpp"
 #include "datasets/error.hpp"
 #include "datasets/file_io.hpp"
+#include "datasets/sha256.hpp"
 #include "reports/baseline.hpp"
 
 namespace odobench {
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
   std::vector<RunRecord> records;
+  std::set<std::string> seen;  // check sums: two runs never agree in every digit of their times
+  std::size_t repeated = 0;
   for (const std::string& run : runs) {
     std::filesystem::path path = run;
     if (std::filesystem::is_directory(path)) path /= "runs.jsonl";
     if (!std::filesystem::exists(path))
       throw DataError(fmt::format("{}: there is no such file", path.string()));
-    for (RunRecord& r : read_records(path.string())) records.push_back(std::move(r));
+    for (RunRecord& r : read_records(path.string())) {
+      if (seen.insert(sha256(to_json_line(r))).second)
+        records.push_back(std::move(r));
+      else
+        ++repeated;
+    }
   }
+  if (repeated > 0)
+    note(fmt::format("{} record{} read twice and counted once", repeated, repeated == 1 ? " was" : "s were"));
   if (records.empty()) throw DataError("no run record in what was given");
   return records;
 }
@@ -40,6 +51,7 @@ ExitCode check_command(const CheckOptions& options) {
   }
   const BaselineReport report = check_baseline(read_baseline(options.baseline), records);
   print_tables({report.table}, format);
+  if (report.compared == 0) warn(fmt::format("nothing to compare: {} has no entry", options.baseline));
   return report.passed ? ExitCode::Success : ExitCode::CheckFailed;
 }
 

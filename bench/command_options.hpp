@@ -16,10 +16,11 @@ namespace odobench {
 inline constexpr std::int64_t kDefaultMaxEvaluations = 50000;
 
 struct RunOptions {
-  std::vector<std::string> solvers;  // each a comma list as typed; empty: lm,ip,ga,pso
-  std::string data;                  // path of set.json; empty: the demo set
-  std::string problem = "calibration";
-  int dimension = 0;  // of a classic problem; 0: its usual one
+  std::vector<std::string> solvers;   // each a comma list as typed; empty: lm,ip,ga,pso
+  std::string data;                   // path of set.json; empty: the demo set
+  std::vector<std::string> problems;  // each a comma list of names and patterns; empty: calibration
+  int dimension = 0;                  // of classic problems; 0: their usual ones
+  bool check_derivatives = false;
   int repeat = 1;
   std::uint64_t seed = 1;
   int threads = 0;                       // 0: one per core

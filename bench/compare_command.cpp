@@ -1,14 +1,10 @@
 #include "bench/compare_command.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <stdexcept>
-#include <tuple>
 
 #include "bench/check_command.hpp"
 #include "bench/number_text.hpp"
@@ -98,56 +94,6 @@ bool draws_random_numbers(const RunRecord& record) {
   }
 }
 
-bool same_box(const RunRecord& a, const RunRecord& b) {
-  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(),
-                    [](const ParameterValue& p, const ParameterValue& q) {
-                      return p.name == q.name && p.lower == q.lower && p.upper == q.upper;
-                    });
-}
-
-// Results of the old side that no limit can judge: their label is gone for their problem and data set, or what is there
-// has another dimension or box. Named once each.
-std::vector<std::string> without_partner(const RunComparison& comparison,
-                                         const std::vector<RunRecord>& before,
-                                         const std::vector<RunRecord>& after) {
-  const auto name = [](const auto& of) {
-    return fmt::format("'{}' of {}", of.label, of.dataset.empty() ? of.problem : of.dataset);
-  };
-  std::vector<std::string> list;
-  for (const OneSided& o : comparison.one_sided)
-    if (o.in_old && o.metric.empty() && o.remark.empty()) list.push_back(name(o));
-  using Row = std::tuple<std::string, std::string, std::string>;
-  std::map<Row, std::vector<const RunRecord*>> boxes;  // of the new side, one record per box
-  const auto there = [](const std::vector<const RunRecord*>& seen, const RunRecord& r) {
-    return std::any_of(seen.begin(), seen.end(), [&](const RunRecord* s) { return same_box(*s, r); });
-  };
-  for (const RunRecord& r : after) {
-    std::vector<const RunRecord*>& seen = boxes[{r.problem, r.dataset, r.label}];
-    if (r.cost && !there(seen, r)) seen.push_back(&r);
-  }
-  std::set<std::string> other;
-  for (const RunRecord& old : before) {
-    const auto seen = boxes.find({old.problem, old.dataset, old.label});
-    if (!old.cost || seen == boxes.end() || seen->second.empty() || there(seen->second, old)) continue;
-    if (other.insert(name(old)).second) list.push_back(name(old) + " (another dimension or box)");
-  }
-  return list;
-}
-
-// Whether the limits met what they are there for; says in one line what they did not.
-bool compared_everything(const RunComparison& comparison, const std::vector<RunRecord>& before,
-                         const std::vector<RunRecord>& after) {
-  const std::vector<std::string> missing = without_partner(comparison, before, after);
-  if (comparison.gated > 0 && missing.empty()) return true;
-  warn(fmt::format("nothing to compare: {}{}",
-                   comparison.gated == 0 ? "no limit of --fail-on meets a pair of results" : "",
-                   missing.empty()
-                       ? ""
-                       : fmt::format("{}no partner on the new side for {}", comparison.gated == 0 ? "; " : "",
-                                     fmt::join(missing, ", "))));
-  return false;
-}
-
 }  // namespace
 
 std::vector<Gate> parse_gates(const std::vector<std::string>& lists) {
@@ -208,8 +154,9 @@ ExitCode compare_command(const CompareArguments& a) {
     print_text(change_summary_markdown(comparison));
   else
     print_tables(change_tables(comparison, format == Format::Json || format == Format::Csv), format);
-  const bool complete = options.gates.empty() || compared_everything(comparison, before, after);
-  return comparison.failures() > 0 || !complete ? ExitCode::CheckFailed : ExitCode::Success;
+  const std::string nothing = nothing_to_compare(comparison);
+  if (!nothing.empty()) warn(nothing);
+  return comparison.failures() > 0 || !nothing.empty() ? ExitCode::CheckFailed : ExitCode::Success;
 }
 
 }  // namespace odobench

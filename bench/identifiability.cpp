@@ -16,6 +16,38 @@ double scale_of(const ParameterInfo& p) {
   return p.nominal != 0 ? std::abs(p.nominal) : half_width(p);
 }
 
+// (J'J)^-1 over what J'J in doubles can tell, and the roots of its diagonal: infinite where that is nothing.
+struct Covariance {
+  Matrix matrix;
+  Vector deviations;
+};
+
+// By the eigenvalues of the equilibrated J'J (unit diagonal): units decide nothing about which of them are rounding.
+Covariance covariance_of(const Matrix& jtj) {
+  const Eigen::Index n = jtj.rows();
+  const Vector size = jtj.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Vector inverse = (size.array() > 0).select(1.0 / size.array(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(inverse.asDiagonal() * jtj * inverse.asDiagonal());
+  const Vector values = eigen.eigenvalues();
+  // What rounding leaves of a zero eigenvalue is not information.
+  const double noise = 1e-14 * static_cast<double>(n) * std::max(values[n - 1], 0.0);
+  Covariance out{Matrix::Zero(n, n), Vector::Zero(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector v = eigen.eigenvectors().col(k);
+    if (values[k] > noise) {
+      const Vector scaled = inverse.cwiseProduct(v);
+      out.matrix += scaled * scaled.transpose() / values[k];
+      continue;
+    }
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (std::abs(v[i]) > 1e-6) out.deviations[i] = std::numeric_limits<double>::infinity();
+  }
+  for (Eigen::Index i = 0; i < n; ++i)
+    out.deviations[i] = size[i] > 0 ? out.deviations[i] + std::sqrt(out.matrix(i, i))
+                                    : std::numeric_limits<double>::infinity();
+  return out;
+}
+
 }  // namespace
 
 Identifiability identifiability(const Problem& problem, const ConstVectorRef& x) {
@@ -38,33 +70,15 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
                      scale_of(parameters[static_cast<std::size_t>(column)]);
     }
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
-  const Vector values = eigen.eigenvalues();  // ascending
-  // What rounding leaves of a zero eigenvalue is not information.
-  const double noise =
-      1e-14 * static_cast<double>(n) * std::max(values.size() > 0 ? values[n - 1] : 0.0, 0.0);
   const double freedom = static_cast<double>(problem.residual_count() - n);
   const double variance = freedom > 0 ? e.cost / freedom : std::numeric_limits<double>::infinity();
   result.residual_deviation = std::sqrt(variance);
-  result.singular_values = values.cwiseMax(0.0).cwiseSqrt().reverse();
-  result.standard_deviations = Vector::Zero(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double part = eigen.eigenvectors()(i, k);
-      if (values[k] > noise)
-        result.standard_deviations[i] += variance * part * part / values[k];
-      else if (std::abs(part) > 1e-6)
-        result.standard_deviations[i] = std::numeric_limits<double>::infinity();
-    }
-  }
-  result.standard_deviations = result.standard_deviations.cwiseSqrt();
+  result.singular_values = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
   result.directions = eigen.eigenvectors().rowwise().reverse();
-  Matrix covariance = Matrix::Zero(n, n);
-  for (Eigen::Index k = 0; k < n; ++k)
-    if (values[k] > noise)
-      covariance +=
-          variance / values[k] * eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose();
-  const Vector inverse = result.standard_deviations.cwiseInverse();
-  result.correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  const Covariance covariance = covariance_of(scaled);
+  result.standard_deviations = std::sqrt(variance) * covariance.deviations;
+  const Vector inverse = covariance.deviations.cwiseInverse();
+  result.correlation = inverse.asDiagonal() * covariance.matrix * inverse.asDiagonal();
   for (Eigen::Index i = 0; i < n; ++i)
     if (!std::isfinite(result.standard_deviations[i]))
       result.correlation.row(i).setConstant(std::numeric_limits<double>::quiet_NaN()),

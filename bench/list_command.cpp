@@ -58,26 +58,49 @@ std::vector<Table> solver_tables() {
   return {solvers, options};
 }
 
+Table problem_table(const std::string& id, const std::string& title, const std::string& note) {
+  return {id,
+          title,
+          {text_column("problem", "problem"), number_column("dimension", "usual dimension"),
+           text_column("dimensions", "dimensions"), number_column("residuals", "residuals"),
+           text_column("derivatives", "derivatives"), text_column("optimum", "lowest known J"),
+           text_column("source", "source")},
+          {},
+          {note}};
+}
+
+std::vector<Cell> problem_row(const ClassicEntry& entry) {
+  const Problem problem = make_classic_problem(entry.name);
+  const char* derivatives = problem.has_residuals()  ? "residuals, Jacobian"
+                            : problem.has_gradient() ? "gradient"
+                                                     : "none";
+  return {text_cell(entry.name),
+          count_cell(entry.dimension),
+          text_cell(entry.dimensions.text()),
+          entry.residuals > 0 ? count_cell(entry.residuals) : Cell{},
+          text_cell(derivatives),
+          text_cell(entry.best_cost ? fmt::format("{:.10g}", *entry.best_cost) : ""),
+          text_cell(entry.source)};
+}
+
+// One table per family.
 std::vector<Table> problem_tables() {
-  Table table{"problems",
-              "Problems, as in --problem=NAME --dimension=N",
-              {text_column("problem", "problem"), number_column("dimension", "usual dimension"),
-               text_column("derivatives", "derivatives"), text_column("optimum", "known optimum")},
-              {},
-              {"calibration takes its parameters, box and recordings from --data=set.json."}};
-  table.rows.push_back({text_cell("calibration"), count_cell(static_cast<double>(kCalibrationParameters)),
-                        text_cell("residuals, Jacobian, normal equations"), text_cell("")});
-  for (const std::string& name : classic_problem_names()) {
-    const Problem problem = make_classic_problem(name, usual_dimension(name));
-    const char* derivatives = problem.has_residuals()          ? "residuals, Jacobian, normal equations"
-                              : problem.has_normal_equations() ? "normal equations"
-                              : problem.has_gradient()         ? "gradient"
-                                                               : "none";
-    table.rows.push_back(
-        {text_cell(name), count_cell(static_cast<double>(problem.dimension())), text_cell(derivatives),
-         text_cell(problem.known_optimum() ? fmt::format("{:g}", *problem.known_optimum()) : "")});
-  }
-  return {table};
+  std::vector<Table> tables{
+      problem_table("problems.calibration", "Calibration, as in --data=set.json",
+                    "Parameters, box and recordings come from the set."),
+      problem_table("problems.classic", "Test functions, as in --problem=NAME --dimension=N",
+                    "Many at once: --problem=rosenbrock,powell or --problem='*'."),
+      problem_table("problems.nist", "Certified regression problems (NIST StRD): nist:NAME/START",
+                    "All of them: --problem='nist:*'."),
+      problem_table("problems.mgh", "More, Garbow, Hillstrom (1981): mgh:NAME, mgh:NAME/10, mgh:NAME/100",
+                    "All of them: --problem='mgh:*'; from the standard starts only: 'mgh:*[!0]'.")};
+  const std::string count = std::to_string(kCalibrationParameters);
+  tables[0].rows.push_back({text_cell("calibration"), count_cell(static_cast<double>(kCalibrationParameters)),
+                            text_cell(count), Cell{}, text_cell("residuals, Jacobian, normal equations"),
+                            Cell{}, Cell{}});
+  for (const ClassicEntry& entry : classic_catalogue())
+    tables[entry.family == "classic" ? 1 : entry.family == "nist" ? 2 : 3].rows.push_back(problem_row(entry));
+  return tables;
 }
 
 std::vector<Table> known_data_tables() {

@@ -1,12 +1,14 @@
 #include "bench/problem_factory.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
 #include "bench/locations.hpp"
+#include "bench/option_values.hpp"
 #include "datasets/error.hpp"
 #include "datasets/sha256.hpp"
 #include "problems/classic/classic_problems.hpp"
@@ -47,7 +49,62 @@ LoadedProblem load_calibration(const std::string& data, InstructionSet kernel) {
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }
   dataset.recordings.clear();
-  return {Problem(model), model, std::move(dataset), path.string(), sha256_of_file(path)};
+  return {Problem(model), model, std::move(dataset), path.string(), sha256_of_file(path), ""};
+}
+
+namespace {
+
+[[noreturn]] void refuse_name(const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = nearest_name(name, names);
+  throw std::invalid_argument(fmt::format("unknown problem '{}'{}; 'bench list problems' shows all", name,
+                                          near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+}
+
+bool takes(const std::string& name, int dimension) {
+  const ClassicEntry* entry = find_classic_problem(name);
+  return dimension == 0 || (entry != nullptr && entry->dimensions.allows(dimension));
+}
+
+}  // namespace
+
+std::vector<std::string> resolve_problems(const std::vector<std::string>& lists, int dimension,
+                                          std::vector<std::string>& notes) {
+  const std::vector<std::string> names = problem_names();
+  std::vector<std::string> chosen;
+  const auto take = [&](const std::string& name) {
+    if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
+  };
+  for (const std::string& item : comma_items(lists)) {
+    if (item.find_first_of("*?[") == std::string::npos) {
+      if (std::find(names.begin(), names.end(), item) == names.end()) refuse_name(item, names);
+      take(item);
+      continue;
+    }
+    int met = 0, left_out = 0;
+    for (const std::string& name : names) {
+      if (::fnmatch(item.c_str(), name.c_str(), 0) != 0) continue;
+      ++met;
+      if (takes(name, dimension))
+        take(name);
+      else
+        ++left_out;
+    }
+    if (met == left_out)
+      throw std::invalid_argument(
+          fmt::format("--problem: no problem is called '{}'{}; 'bench list problems' shows all", item,
+                      met == 0 ? "" : fmt::format(" and takes dimension {}", dimension)));
+    if (left_out > 0)
+      notes.push_back(fmt::format("{}: {} of {} problems do not take dimension {} and are left out", item,
+                                  left_out, met, dimension));
+  }
+  return chosen;
+}
+
+std::string box_check_sum(const std::vector<ParameterInfo>& parameters) {
+  std::string text;
+  for (const ParameterInfo& p : parameters)
+    text += fmt::format("{} {} {:a} {:a}\n", p.name, p.unit, p.lower, p.upper);
+  return sha256(text).substr(0, 16);
 }
 
 LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data,
@@ -57,15 +114,10 @@ LoadedProblem make_problem(const std::string& name, int dimension, const std::st
       throw std::invalid_argument("--dimension: the calibration problem has the dimension of its robot");
     return load_calibration(data, kernel);
   }
-  const std::vector<std::string> names = problem_names();
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    const std::string near = nearest_name(name, names);
-    throw std::invalid_argument(fmt::format("unknown problem '{}'{}; 'bench list problems' shows all", name,
-                                            near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
-  }
-  if (!data.empty())
-    throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", name));
-  return {make_classic_problem(name, dimension), nullptr, std::nullopt, "", ""};
+  if (find_classic_problem(name) == nullptr) refuse_name(name, problem_names());
+  const bool usual = dimension == 0 || dimension == usual_dimension(name);
+  return {make_classic_problem(name, dimension),        nullptr, std::nullopt, "", "",
+          usual ? "" : fmt::format("[n={}]", dimension)};
 }
 
 }  // namespace odobench

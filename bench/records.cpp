@@ -14,6 +14,7 @@
 
 #include "bench/context.hpp"
 #include "bench/identifiability.hpp"
+#include "problems/classic/classic_problems.hpp"
 
 namespace odobench {
 namespace {
@@ -73,9 +74,22 @@ void describe_optima(const std::vector<LocalOptimum>& optima, RunRecord& record)
       "{}: distinct optima by J and the share of the searches that ended there: {}.", record.label, list));
 }
 
+// Where the best cost is known: how near the result came, and a second opinion on its optimality.
+std::optional<KnownAnswer> known_answer(const Problem& problem, const Result& result) {
+  if (!problem.known_optimum() || !result.usable()) return std::nullopt;
+  KnownAnswer known;
+  known.cost = *problem.known_optimum();
+  if (!problem.known_minimisers().empty())
+    known.digits = log_relative_error(result.x, problem.known_minimisers());
+  known.solved = reaches_known_optimum(problem, result.x, result.cost);
+  if (result.termination == Termination::Converged) known.promise = promise_by_differences(problem, result.x);
+  return known;
+}
+
 RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
   RunRecord record;
-  record.problem = loaded.problem.name();
+  record.problem = loaded.name();
+  record.box = box_check_sum(loaded.problem.parameters());
   record.dataset = loaded.dataset_name();
   record.dataset_sha256 = loaded.dataset_sha256;
   record.context = context;
@@ -98,11 +112,13 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.base_seed = base_seed;
   record.repetition = cell.repetition;
   record.start = cell.random_start ? "random" : "nominal";
+  record.random = cell.draws_random_numbers();
   record.budget = budget_figures(budget);
   record.termination = to_string(result.termination);
   record.message = result.message;
   if (result.check)
     record.check = {result.check->test, result.check->value, result.check->limit, result.check->evaluations};
+  record.known = known_answer(loaded.problem, result);
   if (result.usable()) {
     record.cost = result.cost;
     describe_point(loaded, result.x, record);

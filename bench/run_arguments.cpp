@@ -47,9 +47,12 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
       ->allow_extra_args(false);
   app.add_option("--data", options.data, "data set of the calibration problem [the demo set]")
       ->type_name("SET.JSON");
-  app.add_option("--problem", options.problem, "calibration, or a classic test function [calibration]")
-      ->type_name("NAME");
-  add_value(app, "--dimension", "N", "dimension of a classic problem", [&options](const std::string& text) {
+  app.add_option(
+         "--problem", options.problems,
+         "problems and patterns of names, e.g. rosenbrock,nist:*,mgh:*/10; may be given again [calibration]")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  add_value(app, "--dimension", "N", "dimension of classic problems", [&options](const std::string& text) {
     options.dimension = static_cast<int>(whole_number("--dimension", text, 1, 1000));
   });
   add_value(app, "--repeat", "N", "runs of every solver, each with a seed of its own [1]",
@@ -71,6 +74,10 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
                 throw std::invalid_argument(fmt::format("--start={}: expected nominal or random", text));
               options.start = text;
             });
+  app.add_flag("--check-derivatives", options.check_derivatives,
+               "before the run, compare Jacobian and gradient with differences at the start and at three "
+               "random points; exit "
+               "code 1 where they disagree");
   app.add_option("--polish", options.polish,
                  "solver that goes on from the best point of each run, within its budget")
       ->type_name("SOLVER");

@@ -10,6 +10,7 @@
 
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
+#include "bench/derivative_table.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
@@ -26,8 +27,9 @@ namespace {
 // Turns finished runs into records, on disc at once and in memory in the order of the cells.
 class Recorder final : public CellWatcher {
  public:
-  Recorder(const LoadedProblem& loaded, const std::vector<RunCell>& cells, std::uint64_t base_seed,
-           const Budget& budget, const RunContext& context, RecordFile* file, ProgressLine& progress)
+  Recorder(const std::vector<LoadedProblem>& loaded, const std::vector<RunCell>& cells,
+           std::uint64_t base_seed, const Budget& budget, const RunContext& context, RecordFile* file,
+           ProgressLine& progress)
       : loaded_(loaded),
         cells_(cells),
         base_seed_(base_seed),
@@ -42,7 +44,8 @@ class Recorder final : public CellWatcher {
     progress_.progressed(cell, progress);
   }
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    RunRecord record = run_record(loaded_, cells_[cell], base_seed_, budget_, result, context_, time_utc);
+    RunRecord record = run_record(loaded_[cells_[cell].problem], cells_[cell], base_seed_, budget_, result,
+                                  context_, time_utc);
     {
       const std::lock_guard lock(mutex_);
       if (file_ != nullptr) file_->append(record);
@@ -63,7 +66,7 @@ class Recorder final : public CellWatcher {
   bool in_order() const { return in_order_; }
 
  private:
-  const LoadedProblem& loaded_;
+  const std::vector<LoadedProblem>& loaded_;
   const std::vector<RunCell>& cells_;
   const std::uint64_t base_seed_;
   const Budget& budget_;
@@ -96,6 +99,44 @@ CellPlan make_plan(const RunOptions& options, std::vector<std::string>& notes) {
   plan.base_seed = options.seed;
   plan.random_start = options.start == "random";
   return plan;
+}
+
+std::vector<LoadedProblem> load_problems(const RunOptions& options, InstructionSet kernel,
+                                         std::vector<std::string>& notes) {
+  const std::vector<std::string> names =
+      resolve_problems(options.problems.empty() ? std::vector<std::string>{"calibration"} : options.problems,
+                       options.dimension, notes);
+  if (!options.data.empty() && std::find(names.begin(), names.end(), "calibration") == names.end())
+    throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", names.front()));
+  std::vector<LoadedProblem> loaded;
+  for (const std::string& name : names)
+    loaded.push_back(
+        make_problem(name, options.dimension, name == "calibration" ? options.data : "", kernel));
+  return loaded;
+}
+
+// The cells of every problem, problem by problem. Remarks are the same for all.
+std::vector<RunCell> plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded,
+                              std::vector<std::string>& notes) {
+  std::vector<RunCell> cells;
+  std::vector<std::string> repeated;
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
+    plan.problem = loaded[k].name();
+    plan.dataset = loaded[k].dataset_name();
+    for (RunCell& cell : plan_cells(plan, k == 0 ? notes : repeated)) {
+      cell.problem = k;
+      cells.push_back(std::move(cell));
+    }
+  }
+  return cells;
+}
+
+std::vector<std::string> progress_labels(const std::vector<RunCell>& cells,
+                                         const std::vector<LoadedProblem>& loaded) {
+  std::vector<std::string> labels;
+  for (const RunCell& cell : cells)
+    labels.push_back(loaded.size() == 1 ? cell.label() : loaded[cell.problem].name() + " " + cell.label());
+  return labels;
 }
 
 void write_in_order(const std::filesystem::path& path, const std::vector<RunRecord>& records) {
@@ -132,12 +173,8 @@ ExitCode run_command(const RunOptions& options) {
   std::vector<std::string> notes;
   CellPlan plan = make_plan(options, notes);
   const InstructionSet kernel = kernel_in_force(options.kernel);
-  const LoadedProblem loaded = make_problem(options.problem, options.dimension, options.data, kernel);
-  plan.problem = loaded.problem.name();
-  plan.dataset = loaded.dataset_name();
-  const std::vector<RunCell> cells = plan_cells(plan, notes);
-  std::vector<std::string> labels;
-  for (const RunCell& cell : cells) labels.push_back(cell.label());
+  const std::vector<LoadedProblem> loaded = load_problems(options, kernel, notes);
+  const std::vector<RunCell> cells = plan_all(plan, loaded, notes);
 
   const int threads = thread_count(options.threads);
   const RunContext context = run_context(threads, kernel);
@@ -149,23 +186,36 @@ ExitCode run_command(const RunOptions& options) {
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
 
+  const InterruptGuard guard;
+  std::vector<Table> tables;
+  if (options.check_derivatives) {
+    const DerivativeTable checked = check_derivatives(loaded, options.seed, options.quiet);
+    if (!checked.agrees) {
+      print_tables({checked.table}, format);
+      warn("derivatives disagree with differences; nothing was run");
+      return ExitCode::CheckFailed;
+    }
+    tables.push_back(checked.table);
+  }
+
   std::vector<RunRecord> records;
-  if (loaded.calibration)
-    records.push_back(evaluation_record(loaded, "nominal", loaded.problem.start(), context));
+  for (const LoadedProblem& one : loaded)
+    if (one.calibration) records.push_back(evaluation_record(one, "nominal", one.problem.start(), context));
   if (file)
     for (const RunRecord& r : records) file->append(r);
 
-  const InterruptGuard guard;
-  ProgressLine progress(!options.quiet, labels);
+  ProgressLine progress(!options.quiet, progress_labels(cells, loaded));
   Recorder recorder(loaded, cells, plan.base_seed, options.budget, context, file.get(), progress);
-  run_cells(loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
+  std::vector<Problem> problems;
+  for (const LoadedProblem& one : loaded) problems.push_back(one.problem);
+  run_cells(problems, cells, options.budget, threads, InterruptGuard::flag(), recorder);
   progress.clear();
   const bool interrupted = InterruptGuard::flag().load();
   for (RunRecord& r : recorder.records()) records.push_back(std::move(r));
 
-  const std::vector<Table> tables = comparison_tables(records, notes_of_best(records));
+  for (Table& table : comparison_tables(records, notes_of_best(records))) tables.push_back(std::move(table));
   if (file) {
-    save_run_tracks(loaded, records, options.out);
+    for (const LoadedProblem& one : loaded) save_run_tracks(one, records, options.out);
     // Cells end in an order that depends on the threads; the finished file does not.
     if (!recorder.in_order()) write_in_order(file->path(), records);
     save_tables(tables, options.out);

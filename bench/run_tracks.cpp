@@ -31,8 +31,9 @@ TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loade
 void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records,
                      const fs::path& run_directory) {
   if (!loaded.calibration) return;
-  TrackSet set = reference_tracks(loaded.problem.name(), loaded);
-  for (const Comparison& comparison : compare(records))
+  TrackSet set = reference_tracks(loaded.name(), loaded);
+  for (const Comparison& comparison : compare(records)) {
+    if (comparison.problem != loaded.name()) continue;
     for (const ComparisonRow& row : comparison.rows) {
       const RunRecord& shown = *row.shown;
       if (shown.parameters.size() != loaded.problem.parameters().size()) continue;
@@ -44,6 +45,7 @@ void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& 
         append_track(loaded.calibration->integrate(i, z), track.pose);
       set.tracks.push_back(std::move(track));
     }
+  }
   save_tracks(set, run_directory);
 }
 

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "bench/evaluate_command.hpp"
@@ -121,6 +122,7 @@ class TableMaker {
       const Estimate e = estimate(picked(outcomes_[i], pick));
       Cell cell = std::isnan(e.mean) ? Cell{} : fixed_cell(e.mean, kDigits);
       if (i > 0 && !std::isnan(e.mean) && !std::isnan(nominal)) cell.difference = e.mean - nominal;
+      cell.noise = e.half_width.value_or(std::numeric_limits<double>::infinity());
       t.rows[i].push_back(std::move(cell));
       t.rows[i].push_back(e.half_width ? fixed_cell(*e.half_width, kDigits) : Cell{});
     }

@@ -53,7 +53,7 @@ double optimum(const EntropyWindow& window, const BlockQuadratic& cost, BlockSea
 }
 
 LoadedWindow load(const EntropyWindow& window) {
-  LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", ""}};
+  LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", "", ""}};
   const BlockQuadratic& cost = *w.loaded.problem.block_quadratic();
   EntropyState state;
   w.zero = value_at(window, w.loaded.problem.start(), state);
@@ -217,7 +217,7 @@ ExitCode windows_command(const WindowsOptions& options) {
     const std::vector<RunCell> cells = plan_cells(plan, ignored);
     WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, options.budget, context,
                             file.get(), progress, i * per_window);
-    run_cells(window.loaded.problem, cells, options.budget, threads, InterruptGuard::flag(), recorder);
+    run_cells({window.loaded.problem}, cells, options.budget, threads, InterruptGuard::flag(), recorder);
     recorder.move_to(records);
   }
   progress.clear();

@@ -57,12 +57,13 @@ TrajectoryErrors errors_from(const std::string& trajectory, const JsonView& view
 }
 
 BaselineEntry entry_from(const JsonView& view, const Tolerances& defaults) {
-  view.only_keys({"problem", "dataset", "label", "kind", "cost", "evaluations", "totals", "errors", "samples",
-                  "tolerances"});
+  view.only_keys({"problem", "dataset", "box", "label", "kind", "cost", "evaluations", "totals", "errors",
+                  "samples", "tolerances"});
   BaselineEntry entry;
   entry.problem = view.at("problem").string();
   entry.dataset = view.at("dataset").string();
   entry.label = view.at("label").string();
+  if (const auto box = view.find("box")) entry.box = box->string();
   entry.kind = view.at("kind").string();
   if (entry.kind != "run" && entry.kind != "evaluation" && entry.kind != "skipped")
     view.at("kind").fail("\"run\", \"evaluation\" or \"skipped\"");
@@ -153,9 +154,10 @@ std::string errors_text(const std::vector<TrajectoryErrors>& errors) {
 }
 
 std::string entry_text(const BaselineEntry& e, const Tolerances& defaults) {
-  std::string out =
-      fmt::format("    {{\n      \"problem\": {}, \"dataset\": {}, \"label\": {}, \"kind\": {},",
-                  text(e.problem), text(e.dataset), text(e.label), text(e.kind));
+  std::string out = fmt::format(
+      "    {{\n      \"problem\": {}, \"dataset\": {},{} \"label\": {}, \"kind\": {},", text(e.problem),
+      text(e.dataset), e.box.empty() ? "" : fmt::format(" \"box\": {},", text(e.box)), text(e.label),
+      text(e.kind));
   out += fmt::format("\n      \"cost\": {}", text(finite_or_null(e.cost)));
   if (e.evaluations) out += fmt::format(",\n      \"evaluations\": {}", *e.evaluations);
   if (e.totals)
@@ -220,6 +222,7 @@ Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& 
       BaselineEntry entry;
       entry.problem = comparison.problem;
       entry.dataset = comparison.dataset;
+      entry.box = comparison.box;
       entry.label = row.label;
       entry.kind = row.kind;
       entry.cost = row.shown->cost;

@@ -12,8 +12,8 @@
 // |found - expected| <= cost_relative |expected| for J; <= error_m, error_rad for the error cells of x, y and theta;
 // <= total for the sums (table 42). found <= evaluations_factor * expected for evaluations, unchecked when
 // the factor is null or the entry has no "evaluations". "tolerances" of an entry override those of the file
-// one by one. null stands for a value that was not finite and is met only by such a value. Keys other than
-// these are errors.
+// one by one. null stands for a value that was not finite and is met only by such a value. An entry's
+// optional "box" is RunRecord::box: a result in another box is another problem's. Keys other than these are errors.
 //
 // An entry of a label that ran several times may keep what each run gave (`"samples": {"cost": [..], "evaluations": [..],
 // "total": [..]}`, null for a run without a result). Where the records have several runs of the label too, these three are
@@ -49,6 +49,7 @@ struct Tolerances {
 
 struct BaselineEntry {
   std::string problem, dataset, label, kind;
+  std::string box;             // check sum of the parameters' names and bounds; "": whatever box
   std::optional<double> cost;  // absent for skipped and failed runs
   std::optional<std::int64_t> evaluations;
   std::vector<TrajectoryErrors> errors;
@@ -78,12 +79,13 @@ std::string to_json_text(const Baseline& baseline);
 
 struct BaselineReport {
   bool passed = false;
+  std::size_t compared = 0;  // values
   // One row per cell that moved, per label or trajectory missing from the records, and per additional one;
   // what was compared is in a note.
   Table table;
 };
 
-// Fails on every cell outside its tolerance, on labels or trajectories that are missing, and on additional
+// Fails on every cell outside its tolerance, when there is nothing to compare, on labels or trajectories that are missing, and on additional
 // trajectories. Additional labels are listed without failing. Throws std::invalid_argument when two results
 // of the records have one name.
 BaselineReport check_baseline(const Baseline& baseline, const std::vector<RunRecord>& records);

@@ -60,10 +60,13 @@ class Check {
 
   BaselineReport finish(const std::string& source) {
     judge_samples();
+    if (compared_ == 0) report_.passed = false;  // a gate that looks at nothing holds nothing
+    report_.compared = compared_;
     const std::size_t rows = report_.table.rows.size();
     report_.table.notes.push_back(fmt::format("{} values compared{}: {}.", compared_,
                                               source.empty() ? "" : fmt::format(" with {}", source),
-                                              rows == 0        ? "all within tolerance"
+                                              compared_ == 0   ? "nothing to compare, which fails"
+                                              : rows == 0      ? "all within tolerance"
                                               : report_.passed ? "passed"
                                                                : "failed"));
     return std::move(report_);
@@ -192,18 +195,21 @@ class Check {
   std::size_t compared_ = 0;
 };
 
+bool names(const BaselineEntry& entry, const Comparison& group, const ComparisonRow& row) {
+  return group.problem == entry.problem && group.dataset == entry.dataset &&
+         same_problem_box(group.box, entry.box) && row.label == entry.label;
+}
+
 const ComparisonRow* find_row(const std::vector<Comparison>& groups, const BaselineEntry& entry) {
   for (const Comparison& group : groups)
     for (const ComparisonRow& row : group.rows)
-      if (group.problem == entry.problem && group.dataset == entry.dataset && row.label == entry.label)
-        return &row;
+      if (names(entry, group, row)) return &row;
   return nullptr;
 }
 
 bool covered(const Baseline& baseline, const Comparison& group, const ComparisonRow& row) {
   for (const BaselineEntry& entry : baseline.entries)
-    if (group.problem == entry.problem && group.dataset == entry.dataset && row.label == entry.label)
-      return true;
+    if (names(entry, group, row)) return true;
   return false;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "reports/comparison.hpp"
+#include "reports/summary_tables.hpp"
 #include "reports/table_parts.hpp"
 
 namespace odobench {
@@ -37,6 +38,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     tables.push_back(std::move(solvers));
     append(tables, repeats_table(comparison));
   }
+  for (Table& table : summary_tables(records)) tables.push_back(std::move(table));
   return tables;
 }
 

@@ -23,6 +23,7 @@ namespace odobench {
 //   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %
 //   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active bounds
 //   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best
+// and at the end, over all problems, those of reports/summary_tables.hpp.
 // With several problems or data sets, ids begin with "PROBLEM.DATASET." and titles end with the names.
 // `notes` (for example: which parameters are barely determined) go below the parameter table of every group
 // that has one, else below its solver table.

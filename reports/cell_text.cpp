@@ -23,7 +23,8 @@ CellText cell_text(const Cell& cell) {
   CellText text{number_text(*cell.value, cell.notation, cell.precision), ""};
   if (cell.difference)
     text.tail = fmt::format("({})", number_text(*cell.difference, cell.notation, cell.precision, true));
-  if (!cell.mark.empty()) text.tail += (text.tail.empty() ? "" : " ") + cell.mark;
+  for (const std::string& mark : {cell.mark, std::string(cell.worse ? "!" : "")})
+    if (!mark.empty()) text.tail += (text.tail.empty() ? "" : " ") + mark;
   return text;
 }
 

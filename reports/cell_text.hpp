@@ -11,7 +11,8 @@ namespace odobench {
 // notation falls back to 6 significant digits from 1e15 on. "inf", "-inf", "nan" for what is not finite.
 std::string number_text(double value, Notation notation, int precision, bool plus = false);
 
-// The number or text, and what follows it: "(-0.012345)", "U" or "(-0.012345) U". A cell without content
+// The number or text, and what follows it: "(-0.012345)", "U" or "(-0.012345) U"; "!" at the end of what is
+// worse than nominal. A cell without content
 // is an en dash.
 struct CellText {
   std::string head, tail;

@@ -170,9 +170,9 @@ Table verdict_table(const RunComparison& comparison) {
               {}};
   const auto count = [&](Finding f) { return count_cell(static_cast<double>(comparison.count(f))); };
   const std::size_t failures = comparison.failures();
-  table.rows.push_back({text_cell(failures > 0           ? "failed"
-                                  : comparison.gated > 0 ? "passed"
-                                                         : "no limits"),
+  table.rows.push_back({text_cell(failures > 0 || !nothing_to_compare(comparison).empty() ? "failed"
+                                  : comparison.gated > 0                                  ? "passed"
+                                                                                          : "no limits"),
                         count_cell(static_cast<double>(comparison.changes.size())), count(Finding::Better),
                         count(Finding::Worse), count(Finding::Changed),
                         count_cell(static_cast<double>(comparison.gated)),
@@ -203,8 +203,10 @@ std::string verdict(const RunComparison& comparison) {
                   comparison.count(Finding::Better), comparison.count(Finding::Worse),
                   comparison.count(Finding::Changed), comparison.changes.size()) +
       (comparison.one_sided.empty() ? "" : fmt::format(", {} on one side only", comparison.one_sided.size()));
-  if (comparison.gated == 0) return fmt::format("No limits in force: {}.", rest);
   const std::size_t failures = comparison.failures();
+  const std::string nothing = nothing_to_compare(comparison);
+  if (failures == 0 && !nothing.empty()) return fmt::format("Failed: {}; {}.", nothing, rest);
+  if (comparison.gated == 0) return fmt::format("No limits in force: {}.", rest);
   if (failures == 0)
     return fmt::format("Passed: none of {} gated results is worse beyond its limit; {}.", comparison.gated,
                        rest);

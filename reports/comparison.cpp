@@ -67,7 +67,7 @@ void add(Comparison& comparison, const RunRecord& record) {
   comparison.rows.back().runs.push_back(&record);
 }
 
-// Tells several groups apart; the check sum only where the names do not.
+// Tells several groups apart; the check sum only where the names do not: of the data, or of the box where those are the same.
 void name_groups(std::vector<Comparison>& groups, const std::vector<std::string>& check_sums) {
   if (groups.size() < 2) return;
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -75,7 +75,9 @@ void name_groups(std::vector<Comparison>& groups, const std::vector<std::string>
     const bool ambiguous = std::count_if(groups.begin(), groups.end(), [&](const Comparison& other) {
                              return other.problem == group.problem && other.dataset == group.dataset;
                            }) > 1;
-    const std::string sum = ambiguous ? "@" + check_sums[i].substr(0, 8) : "";
+    const bool other_data = std::any_of(check_sums.begin(), check_sums.end(),
+                                        [&](const std::string& sum) { return sum != check_sums[i]; });
+    const std::string sum = ambiguous ? "@" + (other_data ? check_sums[i] : group.box).substr(0, 8) : "";
     const std::string dataset = group.dataset + sum;
     group.id_prefix = dataset.empty() ? group.problem + "." : fmt::format("{}.{}.", group.problem, dataset);
     group.title_suffix = dataset.empty() ? fmt::format(" ({})", group.problem)
@@ -84,6 +86,10 @@ void name_groups(std::vector<Comparison>& groups, const std::vector<std::string>
 }
 
 }  // namespace
+
+bool same_problem_box(const std::string& a, const std::string& b) {
+  return a.empty() || b.empty() || a == b;
+}
 
 std::optional<double> Comparison::best_cost() const {
   double best = std::numeric_limits<double>::infinity();
@@ -97,15 +103,19 @@ std::vector<Comparison> compare(const std::vector<RunRecord>& records) {
   std::vector<std::string> check_sums;
   for (const RunRecord& record : records) {
     std::size_t at = 0;
-    while (at < groups.size() && std::tie(groups[at].problem, groups[at].dataset, check_sums[at]) !=
-                                     std::tie(record.problem, record.dataset, record.dataset_sha256))
-      ++at;
+    const auto other = [&](std::size_t i) {
+      return std::tie(groups[i].problem, groups[i].dataset, check_sums[i]) !=
+                 std::tie(record.problem, record.dataset, record.dataset_sha256) ||
+             !same_problem_box(groups[i].box, record.box);
+    };
+    while (at < groups.size() && other(at)) ++at;
     if (at == groups.size()) {
       groups.emplace_back();
       groups.back().problem = record.problem;
       groups.back().dataset = record.dataset;
       check_sums.push_back(record.dataset_sha256);
     }
+    if (groups[at].box.empty()) groups[at].box = record.box;
     add(groups[at], record);
   }
   for (Comparison& group : groups) finish(group);
@@ -122,6 +132,26 @@ void require_unique(const std::vector<Comparison>& groups) {
             "two different results are called '{}' on problem '{}', data set '{}': the records mix data "
             "sets of one name or an evaluation and a run of one label",
             row.label, group.problem, group.dataset));
+}
+
+std::optional<double> noise_over_runs(const ComparisonRow& row,
+                                      const std::function<std::optional<double>(const RunRecord&)>& figure) {
+  if (row.runs.size() > 1) {
+    std::vector<double> values;
+    for (const RunRecord* run : row.runs)
+      if (const auto value = figure(*run); value && std::isfinite(*value)) values.push_back(*value);
+    if (values.size() > 1) return spread(values).interquartile_range();
+  }
+  const RunRecord& one = *row.shown;
+  const bool repeats =
+      one.kind == "evaluation" || (!one.random.value_or(true) && one.start != "random" &&
+                                   one.termination != "time_limit" && one.termination != "interrupted");
+  return repeats ? std::nullopt : std::optional<double>(std::numeric_limits<double>::infinity());
+}
+
+std::optional<double> timing_noise(const ComparisonRow& row) {
+  if (row.runs.size() < 2) return std::numeric_limits<double>::infinity();
+  return noise_over_runs(row, [](const RunRecord& run) { return std::optional<double>(run.seconds); });
 }
 
 std::string median_note(const Comparison& comparison) {

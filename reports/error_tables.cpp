@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
 
 #include "reports/table_parts.hpp"
 
@@ -41,14 +44,49 @@ std::vector<Column> error_columns() {
   return columns;
 }
 
-Cell error_cell(double value, const double* reference) {
+// The errors of every run of a row, for what repetitions change about them.
+class ErrorNoise {
+ public:
+  explicit ErrorNoise(const ComparisonRow& row) : row_(row) {
+    if (row.runs.size() < 2) return;
+    for (const RunRecord* run : row.runs) all_[run] = error_statistics(run->errors);
+  }
+  using Figure = std::function<std::optional<double>(const std::vector<TrajectoryErrors>&)>;
+  std::optional<double> of(const Figure& figure) const {
+    return noise_over_runs(row_, [&](const RunRecord& run) -> std::optional<double> {
+      const auto found = all_.find(&run);
+      return found == all_.end() || found->second.empty() ? std::nullopt : figure(found->second);
+    });
+  }
+  std::optional<double> of(const std::string& trajectory, std::size_t v,
+                           double ErrorStatistics::*part) const {
+    return of([&](const std::vector<TrajectoryErrors>& errors) -> std::optional<double> {
+      const TrajectoryErrors* e = find_trajectory(errors, trajectory);
+      return e == nullptr ? std::nullopt : std::optional<double>(e->variables[v].*part);
+    });
+  }
+  std::optional<double> of_total(std::optional<std::size_t> v) const {
+    return of([&](const std::vector<TrajectoryErrors>& errors) -> std::optional<double> {
+      const Totals totals = error_totals(errors);
+      return v ? totals.sums[*v] : totals.total;
+    });
+  }
+
+ private:
+  const ComparisonRow& row_;
+  std::map<const RunRecord*, std::vector<TrajectoryErrors>> all_;
+};
+
+Cell error_cell(double value, const double* reference, std::optional<double> noise) {
   Cell cell = fixed_cell(value, kDigits);
+  cell.noise = noise;
   if (reference != nullptr && !std::isnan(*reference) && !std::isnan(value))
     cell.difference = value - *reference;
   return cell;
 }
 
-void append_cells(std::vector<Cell>& row, const TrajectoryErrors* errors, const TrajectoryErrors* reference) {
+void append_cells(std::vector<Cell>& row, const TrajectoryErrors* errors, const TrajectoryErrors* reference,
+                  const ErrorNoise& noise) {
   if (errors == nullptr) {
     row.insert(row.end(), 9, Cell{});
     return;
@@ -56,11 +94,14 @@ void append_cells(std::vector<Cell>& row, const TrajectoryErrors* errors, const 
   for (std::size_t v = 0; v < 3; ++v) {
     const ErrorStatistics& e = errors->variables[v];
     const ErrorStatistics* r = reference == nullptr ? nullptr : &reference->variables[v];
-    row.push_back(error_cell(e.max, r == nullptr ? nullptr : &r->max));
-    row.push_back(error_cell(e.mean, r == nullptr ? nullptr : &r->mean));
+    const auto cell = [&](double ErrorStatistics::*part) {
+      return error_cell(e.*part, r == nullptr ? nullptr : &(r->*part), noise.of(errors->trajectory, v, part));
+    };
+    row.push_back(cell(&ErrorStatistics::max));
+    row.push_back(cell(&ErrorStatistics::mean));
     // A single repetition has no standard deviation; a broken one shows as nan in all three.
     const bool single = std::isnan(e.sigma) && !std::isnan(e.mean);
-    row.push_back(single ? Cell{} : error_cell(e.sigma, r == nullptr ? nullptr : &r->sigma));
+    row.push_back(single ? Cell{} : cell(&ErrorStatistics::sigma));
   }
 }
 
@@ -81,7 +122,8 @@ Table trajectory_table(const Comparison& comparison, const std::string& trajecto
     if (!belongs(row)) continue;
     add_reference(table, row);
     std::vector<Cell> cells{text_cell(row.label)};
-    append_cells(cells, find_trajectory(row.errors, trajectory), &row == nominal ? nullptr : reference);
+    append_cells(cells, find_trajectory(row.errors, trajectory), &row == nominal ? nullptr : reference,
+                 ErrorNoise(row));
     table.rows.push_back(std::move(cells));
   }
   return table;
@@ -106,24 +148,45 @@ bool complete(const ComparisonRow& row, const Comparison& comparison) {
 std::vector<Cell> totals_row(const ComparisonRow& row, const Comparison& comparison) {
   std::vector<Cell> cells{text_cell(row.label)};
   if (!complete(row, comparison)) {
-    cells.insert(cells.end(), 6, Cell{});
+    cells.insert(cells.end(), 7, Cell{});
     return cells;
   }
   const Totals totals = error_totals(row.errors);
-  for (double sum : totals.sums) cells.push_back(fixed_cell(sum, kDigits));
+  const ErrorNoise noise(row);
+  for (std::size_t v = 0; v < 3; ++v) {
+    cells.push_back(fixed_cell(totals.sums[v], kDigits));
+    cells.back().noise = noise.of_total(v);
+  }
   cells.push_back(fixed_cell(totals.total, kDigits));
+  cells.back().noise = noise.of_total(std::nullopt);
   const ComparisonRow* nominal = comparison.nominal();
   if (nominal == nullptr || &row == nominal || !complete(*nominal, comparison)) {
-    cells.insert(cells.end(), 2, Cell{});
+    cells.insert(cells.end(), 3, Cell{});
     return cells;
   }
   const double before = error_totals(nominal->errors).total;
   cells.push_back(fixed_cell(totals.total - before, kDigits));
   cells.push_back(before > 0 ? fixed_cell(100 * (totals.total - before) / before, 2) : Cell{});
+  const WorseMeans worse = worse_means(row, *nominal);
+  cells.push_back(text_cell(fmt::format("{} of {}", worse.worse, worse.all)));
   return cells;
 }
 
 }  // namespace
+
+WorseMeans worse_means(const ComparisonRow& row, const ComparisonRow& nominal) {
+  WorseMeans count;
+  for (const TrajectoryErrors& errors : row.errors) {
+    const TrajectoryErrors* before = find_trajectory(nominal.errors, errors.trajectory);
+    if (before == nullptr) continue;
+    for (std::size_t v = 0; v < 3; ++v) {
+      const double now = errors.variables[v].mean, then = before->variables[v].mean;
+      ++count.all;
+      if (!(now <= then * (1 + kRepeats))) ++count.worse;
+    }
+  }
+  return count;
+}
 
 void add_reference(Table& table, const ComparisonRow& row) {
   if (row.kind == "evaluation" && row.label == "nominal") table.references.push_back(table.rows.size());
@@ -154,7 +217,7 @@ std::optional<Table> error_overview(const Comparison& comparison) {
   for (Column& column : error_columns()) table.columns.push_back(std::move(column));
   for (const TrajectoryErrors& trajectory : row.errors) {
     std::vector<Cell> cells{text_cell(trajectory.trajectory)};
-    append_cells(cells, &trajectory, nullptr);
+    append_cells(cells, &trajectory, nullptr, ErrorNoise(row));
     table.rows.push_back(std::move(cells));
   }
   table.notes.push_back(kDefinition);
@@ -173,7 +236,8 @@ std::optional<Table> totals_table(const Comparison& comparison) {
                    sum_column("sum_e_sr_theta", "Σ e_θ,sr", "rad", "$\\sum e_{\\theta,\\mathrm{sr}}$"),
                    sum_column("total", "total", "", ""),
                    {"change", "change", "", "", "change"},
-                   {"change_percent", "change", "%", "", "change"}};
+                   {"change_percent", "change", "%", "", "change"},
+                   {"worse_means", "means worse", "", "", "change"}};
   for (const ComparisonRow& row : comparison.rows) {
     if (!belongs(row)) continue;
     add_reference(table, row);
@@ -181,7 +245,7 @@ std::optional<Table> totals_table(const Comparison& comparison) {
   }
   table.notes.push_back(
       fmt::format("Sums of e_sr over {} trajectories; the total adds metres and radians, as in the thesis; "
-                  "change: to nominal.",
+                  "change: to nominal. Means worse: mean errors e_sr above the nominal ones.",
                   comparison.trajectories.size()));
   for (std::string& note : common_notes(comparison)) table.notes.push_back(std::move(note));
   return table;

@@ -45,8 +45,8 @@ Table method_table(const std::vector<RunRecord>& records) {
       best_if(Better::Higher, {"at_optimum", "at it", "%", "", "gap"}),
       best_if(Better::Lower, {"gap_relaxed_mean", "below the relaxation, mean", "", "", "relaxation"}),
       best_if(Better::Lower, {"gap_relaxed_max", "max", "", "", "relaxation"}),
-      best_if(Better::Lower, {"seconds", "time", "s", "", "speed"}),
-      best_if(Better::Higher, {"windows_per_second", "windows/s", "", "", "speed"})};
+      {"seconds", "time", "s", "", "speed"},
+      {"windows_per_second", "windows/s", "", "", "speed"}};
   bool gaps = false;
   for (const RunRecord& r : records) {
     const auto at_optimum = figure(r, "at_optimum");

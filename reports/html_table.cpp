@@ -119,6 +119,8 @@ std::string notes(const Table& table) {
 std::string render_html_table(const Table& unmarked, const std::string& anchor, int number) {
   Table table = unmarked;
   mark_best(table);
+  if (const std::string note = worse_note(table); !note.empty())
+    table.notes.insert(table.notes.begin(), note);
   for (std::size_t r = 0; r < table.rows.size(); ++r)
     if (table.rows[r].size() != table.columns.size())
       throw std::invalid_argument(fmt::format("table '{}', row {}: {} cells, expected {}", table.id, r + 1,

@@ -74,6 +74,11 @@ void JsonView::only_keys(std::initializer_list<const char*> known) const {
   });
 }
 
+bool JsonView::boolean() const {
+  if (!value_->is_boolean()) fail("true or false");
+  return value_->get<bool>();
+}
+
 std::string JsonView::string() const {
   if (!value_->is_string()) fail("a string");
   return value_->get<std::string>();

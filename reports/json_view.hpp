@@ -26,6 +26,7 @@ class JsonView {
   void only_keys(std::initializer_list<const char*> known) const;
 
   std::string string() const;
+  bool boolean() const;
   double number() const;  // null, which is how JSON has to store what is not finite, gives not-a-number
   std::optional<double> optional_number() const;  // null gives none
   std::int64_t integer() const;

@@ -52,7 +52,7 @@ class Collector {
   }
 
   std::vector<Metric> collect() {
-    add({"J", "J", "", Better::Lower, false, {}}, [&](std::size_t i) { return run(i).cost; });
+    add({"J", "J", "", Better::Lower, false, false, {}}, [&](std::size_t i) { return run(i).cost; });
     totals();
     trajectories();
     if (row_.kind == "run") effort();
@@ -83,13 +83,13 @@ class Collector {
       if (errors_[i].empty() || errors_[i].size() != trajectories_.size()) return std::nullopt;
       return error_totals(errors_[i]);
     };
-    add({"total", "total", "m + rad", Better::Lower, false, {}}, [&](std::size_t i) {
+    add({"total", "total", "m + rad", Better::Lower, false, false, {}}, [&](std::size_t i) {
       const auto totals = totals_of(i);
       return totals ? std::optional<double>(totals->total) : std::nullopt;
     });
     for (std::size_t v = 0; v < 3; ++v) {
       const std::string name = std::string("total_") + kPoseVariables[v];
-      add({name, name, v == 2 ? "rad" : "m", Better::Lower, false, {}}, [&](std::size_t i) {
+      add({name, name, v == 2 ? "rad" : "m", Better::Lower, false, false, {}}, [&](std::size_t i) {
         const auto totals = totals_of(i);
         return totals ? std::optional<double>(totals->sums[v]) : std::nullopt;
       });
@@ -104,6 +104,7 @@ class Collector {
              v == 2 ? "rad" : "m",
              Better::Lower,
              false,
+             false,
              {}},
             [&](std::size_t i) -> std::optional<double> {
               const TrajectoryErrors* errors = find_trajectory(errors_[i], trajectory);
@@ -112,11 +113,11 @@ class Collector {
   }
 
   void effort() {
-    add({"evaluations", "evaluations", "", Better::Lower, false, {}},
+    add({"evaluations", "evaluations", "", Better::Lower, true, false, {}},
         [&](std::size_t i) { return std::optional<double>(static_cast<double>(run(i).evaluations)); });
-    add({"iterations", "iterations", "", Better::Lower, false, {}},
+    add({"iterations", "iterations", "", Better::Lower, true, false, {}},
         [&](std::size_t i) { return std::optional<double>(static_cast<double>(run(i).iterations)); });
-    add({"seconds", "seconds", "s", Better::Lower, true, {}},
+    add({"seconds", "seconds", "s", Better::Lower, true, true, {}},
         [&](std::size_t i) { return std::optional<double>(run(i).seconds); });
   }
 
@@ -125,7 +126,7 @@ class Collector {
     for (const RunRecord* one : row_.runs)
       for (const auto& [name, value] : one->statistics) names.insert(name);
     for (const std::string& name : names)
-      add({name, "statistics", "", direction_of(name), name == "windows_per_second", {}},
+      add({name, "statistics", "", direction_of(name), false, name == "windows_per_second", {}},
           [&](std::size_t i) -> std::optional<double> {
             const auto found = run(i).statistics.find(name);
             return found == run(i).statistics.end() ? std::nullopt : std::optional<double>(found->second);

@@ -22,6 +22,7 @@ struct Metric {
   std::string family;  // what a list of metrics may call it by as well: "e_sr", "statistics"; else the name
   std::string unit;
   Better better = Better::Lower;
+  bool effort = false;         // what a budget limits: evaluations, iterations, seconds
   bool timing = false;         // depends on the machine and its load
   std::vector<double> values;  // one per run, in the order of the row
 };

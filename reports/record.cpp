@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "reports/json_view.hpp"
@@ -76,6 +77,18 @@ OptimalityRecord check_from(const JsonView& view) {
           view.at("evaluations").integer()};
 }
 
+json to_json(const KnownAnswer& k) {
+  return {{"cost", finite_or_null(k.cost)},
+          {"digits", finite_or_null(k.digits)},
+          {"solved", k.solved},
+          {"promise_by_differences", finite_or_null(k.promise)}};
+}
+
+KnownAnswer known_from(const JsonView& view) {
+  return {view.at("cost").number(), view.at("digits").optional_number(), view.at("solved").boolean(),
+          view.at("promise_by_differences").optional_number()};
+}
+
 json to_json(const RunContext& c) {
   return {{"cpu", c.cpu},
           {"compiler", c.compiler},
@@ -126,6 +139,8 @@ void read_identity(const JsonView& view, RunRecord& r) {
   r.base_seed = view.at("base_seed").unsigned_integer();
   r.repetition = view.at("repetition").small_integer();
   r.start = view.at("start").string();
+  if (const auto box = view.find("box")) r.box = box->string();
+  if (const auto random = view.find("random")) r.random = random->boolean();
   if (const auto budget = view.find("budget"))
     budget->each_field(
         [&](const std::string& key, const JsonView& value) { r.budget[key] = value.number(); });
@@ -135,6 +150,7 @@ void read_outcome(const JsonView& view, RunRecord& r) {
   r.termination = view.at("termination").string();
   r.message = view.at("message").string();
   if (const auto check = view.find("check")) r.check = check_from(*check);
+  if (const auto known = view.find("known")) r.known = known_from(*known);
   r.cost = view.at("cost").optional_number();
   r.cost_before_polish = view.at("cost_before_polish").optional_number();
   view.at("parameters").each_item([&](const JsonView& item) {
@@ -195,6 +211,9 @@ json to_json(const RunRecord& r) {
            {"context", to_json(r.context)},
            {"time_utc", r.time_utc}};
   for (const auto& [key, value] : r.options) out["options"][key] = value;
+  if (!r.box.empty()) out["box"] = r.box;
+  if (r.random) out["random"] = *r.random;
+  if (r.known) out["known"] = to_json(*r.known);
   if (r.check) out["check"] = to_json(*r.check);
   if (!r.group.empty()) out["group"] = r.group;
   for (const auto& [key, value] : r.budget) out["budget"][key] = finite_or_null(value);
@@ -218,6 +237,11 @@ RunRecord record_from_json(const json& document) {
   read_identity(view, record);
   read_outcome(view, record);
   return record;
+}
+
+bool false_verdict(const RunRecord& r) {
+  if (r.termination != "converged" || !r.known || !r.known->promise) return false;
+  return *r.known->promise > std::max(1e-6, r.check ? 10 * r.check->limit : 0.0);
 }
 
 std::string to_json_line(const RunRecord& record) {

@@ -47,6 +47,16 @@ struct OptimalityRecord {
   std::int64_t evaluations = 0;  // made for the test, not counted among those of the run
 };
 
+// Of a problem whose best cost is known: certified, published, or the lowest that anyone has found.
+struct KnownAnswer {
+  double cost = 0;  // the lowest known
+  std::optional<double>
+      digits;  // of the worst parameter, where the minimisers are known (NIST's log relative error, 0 to 11)
+  bool solved = false;  // docs/problems.md says by which rule
+  // Of a bounded Gauss-Newton step at the returned point by differences of residuals alone: a second opinion on `converged`.
+  std::optional<double> promise;
+};
+
 struct RunContext {
   std::string cpu;
   std::string compiler;
@@ -72,12 +82,16 @@ struct RunRecord {
   std::uint64_t base_seed = 0;
   int repetition = 1;  // of the run, 1-based
   std::string start;   // nominal | random
+  std::string box;     // check sum of the parameters' names and bounds; "" in older records
+  std::optional<bool>
+      random;  // whether the solver or its polish draws random numbers; absent in older records
   // Limits in force: max_evaluations, max_seconds (0: none), target. Empty in records of versions that did not write it.
   std::map<std::string, double> budget;
 
   std::string termination;                // converged, settled, stalled, target_reached, max_evaluations, ...
   std::string message;                    // the sentence with both numbers, or why it was skipped
   std::optional<OptimalityRecord> check;  // absent without derivatives, and in records of earlier versions
+  std::optional<KnownAnswer> known;
   std::optional<double> cost;
   std::optional<double> cost_before_polish;
   std::vector<ParameterValue> parameters;
@@ -115,6 +129,10 @@ inline constexpr std::array<const char*, 5> kIdentifiabilitySeries{
 nlohmann::json to_json(const RunRecord& record);
 // Throws std::runtime_error naming the field, what was found and what was expected.
 RunRecord record_from_json(const nlohmann::json& json);
+
+// Whether `converged` was said though a step found without the problem's own derivatives would still gain: more than ten times
+// what the verdict's test allows, and at least 1e-6 of the cost.
+bool false_verdict(const RunRecord& record);
 
 // One line, without a newline at its end.
 std::string to_json_line(const RunRecord& record);

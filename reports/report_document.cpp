@@ -12,6 +12,7 @@
 #include "reports/filter_tables.hpp"
 #include "reports/fusion_record.hpp"
 #include "reports/run_figures.hpp"
+#include "reports/summary_tables.hpp"
 #include "reports/table_parts.hpp"
 #include "reports/track_figures.hpp"
 #include "reports/vega.hpp"
@@ -84,7 +85,8 @@ std::string made(const std::vector<RunRecord>& records) {
   return fmt::format("{}, odobench {} (revision {}), {}", first, c.version, c.git_revision, c.cpu);
 }
 
-// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %)."
+// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of 18 mean errors got
+// worse."
 std::string headline(const Comparison& comparison) {
   const ComparisonRow* best = nullptr;
   for (const ComparisonRow& row : comparison.rows)
@@ -99,8 +101,10 @@ std::string headline(const Comparison& comparison) {
   text += fmt::format("; nominal {:.10g}.", *nominal->shown->cost);
   if (best->errors.empty() || best->errors.size() != nominal->errors.size()) return text;
   const double total = error_totals(best->errors).total, before = error_totals(nominal->errors).total;
-  return text + fmt::format(" Its total error is {:.6f}, nominal {:.6f} ({:+.2f} %).", total, before,
-                            100 * (total - before) / before);
+  const WorseMeans worse = worse_means(*best, *nominal);
+  return text + fmt::format(
+                    " Its total error is {:.6f}, nominal {:.6f} ({:+.2f} %); {} of {} mean errors got worse.",
+                    total, before, 100 * (total - before) / before, worse.worse, worse.all);
 }
 
 // The table without the columns of these ids.
@@ -148,6 +152,9 @@ class Builder {
 
   void summary() {
     Section section{"summary", "Summary", description(input_.records) + ".", {}};
+    std::vector<Table> overall = summary_tables(input_.records);
+    std::reverse(overall.begin(), overall.end());
+    append(std::move(overall), section);
     for (const Comparison& c : comparisons_) {
       const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
                                    [](const ComparisonRow& r) { return r.kind != "evaluation"; });

@@ -1,16 +1,20 @@
 #include "reports/run_comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace odobench {
 namespace {
 
+constexpr const char* kOtherBox = "another dimension or box";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double median_of(const std::vector<double>& values) {
@@ -95,6 +99,17 @@ bool is_sure(const Change& c, const Gate& gate, double alpha) {
   return rose == !std::signbit(gate.limit);
 }
 
+// A run that its budget ended says nothing about effort when the other side had another budget: less of it is not better.
+bool stopped_by_other_budget(const ComparisonRow& before, const ComparisonRow& after) {
+  if (before.shown->budget == after.shown->budget) return false;
+  const auto stopped = [](const RunRecord* run) {
+    return run->termination == "max_evaluations" || run->termination == "time_limit" ||
+           run->termination == "target_reached" || run->termination == "interrupted";
+  };
+  return std::any_of(before.runs.begin(), before.runs.end(), stopped) ||
+         std::any_of(after.runs.begin(), after.runs.end(), stopped);
+}
+
 class Comparer {
  public:
   Comparer(const std::vector<RunRecord>& old_records, const std::vector<RunRecord>& new_records,
@@ -111,23 +126,34 @@ class Comparer {
         if (const ComparisonRow* other = find(new_, group, row.label))
           pair(group, row, *other);
         else
-          result_.one_sided.push_back({group.problem, group.dataset, row.label, "", true, skipped(row)});
+          result_.one_sided.push_back(
+              {group.problem, group.dataset, row.label, "", true, why_alone(new_, group, row)});
       }
     for (const Comparison& group : new_)
       for (const ComparisonRow& row : group.rows)
         if (find(old_, group, row.label) == nullptr)
-          result_.one_sided.push_back({group.problem, group.dataset, row.label, "", false, skipped(row)});
+          result_.one_sided.push_back(
+              {group.problem, group.dataset, row.label, "", false, why_alone(old_, group, row)});
     judge();
     return std::move(result_);
   }
 
  private:
+  // Another dimension or another box is another problem.
   static const ComparisonRow* find(const std::vector<Comparison>& groups, const Comparison& like,
-                                   const std::string& label) {
+                                   const std::string& label, bool any_box = false) {
     for (const Comparison& group : groups)
       for (const ComparisonRow& row : group.rows)
-        if (group.problem == like.problem && group.dataset == like.dataset && row.label == label) return &row;
+        if (group.problem == like.problem && group.dataset == like.dataset && row.label == label &&
+            (any_box || same_problem_box(group.box, like.box)))
+          return &row;
     return nullptr;
+  }
+
+  static std::string why_alone(const std::vector<Comparison>& others, const Comparison& group,
+                               const ComparisonRow& row) {
+    if (row.kind == "skipped") return skipped(row);
+    return find(others, group, row.label, true) != nullptr ? kOtherBox : "";
   }
 
   static std::string skipped(const ComparisonRow& row) {
@@ -169,6 +195,7 @@ class Comparer {
               {group.problem, group.dataset, before.label, metric.name, in_old, remark});
     };
     const bool same = noiseless(before, after, options_);
+    const bool unfair = stopped_by_other_budget(before, after);
     const bool foreign = before.shown->context.cpu != after.shown->context.cpu;
     for (const Metric& metric : old_metrics) {
       const Metric* other = find_metric(new_metrics, metric.name);
@@ -179,6 +206,7 @@ class Comparer {
       c.label = before.label;
       c.before = metric;
       c.after = *other;
+      if (unfair && metric.effort) c.before.better = c.after.better = Better::None;
       c.noiseless = same && !metric.timing;
       measure(c);
       const Gate* gate = gate_of(metric);
@@ -229,6 +257,42 @@ class Comparer {
   RunComparison result_;
   bool foreign_times_ = false;
 };
+
+bool same_box(const RunRecord& a, const RunRecord& b) {
+  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(), b.parameters.end(),
+                    [](const ParameterValue& p, const ParameterValue& q) {
+                      return p.name == q.name && p.lower == q.lower && p.upper == q.upper;
+                    });
+}
+
+// Results of the old side that no limit can judge: their label is gone for their problem and data set, or what is there
+// has another dimension or box. Named once each.
+std::vector<std::string> without_partner(const RunComparison& comparison,
+                                         const std::vector<RunRecord>& before,
+                                         const std::vector<RunRecord>& after) {
+  const auto name = [](const auto& of) {
+    return fmt::format("'{}' of {}", of.label, of.dataset.empty() ? of.problem : of.dataset);
+  };
+  std::vector<std::string> list;
+  for (const OneSided& o : comparison.one_sided)
+    if (o.in_old && o.metric.empty() && o.remark.empty()) list.push_back(name(o));
+  using Row = std::tuple<std::string, std::string, std::string>;
+  std::map<Row, std::vector<const RunRecord*>> boxes;  // of the new side, one record per box
+  const auto there = [](const std::vector<const RunRecord*>& seen, const RunRecord& r) {
+    return std::any_of(seen.begin(), seen.end(), [&](const RunRecord* s) { return same_box(*s, r); });
+  };
+  for (const RunRecord& r : after) {
+    std::vector<const RunRecord*>& seen = boxes[{r.problem, r.dataset, r.label}];
+    if (r.cost && !there(seen, r)) seen.push_back(&r);
+  }
+  std::set<std::string> other;
+  for (const RunRecord& old : before) {
+    const auto seen = boxes.find({old.problem, old.dataset, old.label});
+    if (!old.cost || seen == boxes.end() || seen->second.empty() || there(seen->second, old)) continue;
+    if (other.insert(name(old)).second) list.push_back(name(old) + " (another dimension or box)");
+  }
+  return list;
+}
 
 void add_options(std::vector<std::string>& lines, const std::string& label,
                  const std::map<std::string, std::string>& before,
@@ -346,7 +410,20 @@ std::vector<std::string> unlike_rows(const ComparisonRow& before, const Comparis
 
 RunComparison compare_runs(const std::vector<RunRecord>& old_records,
                            const std::vector<RunRecord>& new_records, const CompareOptions& options) {
-  return Comparer(old_records, new_records, options).run();
+  RunComparison result = Comparer(old_records, new_records, options).run();
+  result.limits = options.gates.size();
+  if (result.limits > 0) result.missing = without_partner(result, old_records, new_records);
+  return result;
+}
+
+std::string nothing_to_compare(const RunComparison& comparison) {
+  if (comparison.limits == 0 || (comparison.gated > 0 && comparison.missing.empty())) return "";
+  std::string text = "nothing to compare: ";
+  if (comparison.gated == 0) text += "no limit of --fail-on meets a pair of results";
+  if (!comparison.missing.empty())
+    text += fmt::format("{}no partner on the new side for {}", comparison.gated == 0 ? "; " : "",
+                        fmt::join(comparison.missing, ", "));
+  return text;
 }
 
 std::vector<std::string> metric_names(const std::vector<RunRecord>& old_records,

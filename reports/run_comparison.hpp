@@ -1,6 +1,6 @@
 // Two sets of run records side by side: what changed, by how much, and whether that is more than chance.
 //
-// Rows are matched by problem, data set name and label, figures by metric (reports/metrics.hpp). Per pair:
+// Rows are matched by problem, data set name, box and label, figures by metric (reports/metrics.hpp). Per pair:
 //   change = median(new) - median(old) over the repeats, absolute and relative to |median(old)|;
 //   Mann-Whitney's two-sided p, A12 and its name, the Hodges-Lehmann shift (reports/rank_test.hpp).
 // When is a change sure?
@@ -11,6 +11,8 @@
 //   else          it is not: single runs, too few runs for any p to get that low (smallest_p), or p is too high.
 // Holm's correction runs over the gated tests together, and over the other tests together: many figures are looked at, and the
 // verdict should have one level, alpha, whatever their number.
+//
+// Effort (evaluations, iterations, seconds) has no better direction where budgets differ and one of them ended a run.
 //
 // A gate is a metric with a limit, "J may not rise by more than 0.1 %". It fails when the change passes the limit AND is sure.
 // Times that were taken on different processors are not gated unless asked for.
@@ -82,10 +84,17 @@ struct RunComparison {
   std::vector<std::string> remarks;  // what was not gated, and why
   std::size_t tests = 0, gated_tests = 0, gated = 0;
   double alpha = 0.05;
+  std::size_t limits = 0;  // gates that were asked for
+  std::vector<std::string>
+      missing;  // with gates: results of the old side that no limit can judge, for lack of a partner
 
   std::size_t failures() const;
   std::size_t count(Finding finding) const;
 };
+
+// Why gates that were asked for did not judge all they are there for, "" when they did: "nothing to compare: no limit of --fail-on meets a
+// pair of results; no partner on the new side for 'lm' of demo".
+std::string nothing_to_compare(const RunComparison& comparison);
 
 // Throws std::invalid_argument when a side gives two results one name.
 RunComparison compare_runs(const std::vector<RunRecord>& old_records,

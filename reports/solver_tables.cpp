@@ -20,38 +20,72 @@ Cell cost_cell(const std::optional<double>& cost) {
   return cost ? significant_cell(*cost, kCostDigits) : Cell{};
 }
 
+Cell with_noise(Cell cell, std::optional<double> noise) {
+  cell.noise = noise;
+  return cell;
+}
+
+std::optional<double> cost_noise(const ComparisonRow& row) {
+  return noise_over_runs(row, [](const RunRecord& run) { return run.cost; });
+}
+
+// The lowest known J of the problem, where there is one.
+std::optional<double> known_cost(const Comparison& comparison) {
+  for (const ComparisonRow& row : comparison.rows)
+    if (row.shown->known) return row.shown->known->cost;
+  return std::nullopt;
+}
+
 Cell ratio_to_nominal(const Comparison& comparison, const RunRecord& record) {
   const ComparisonRow* nominal = comparison.nominal();
   if (nominal == nullptr || !nominal->shown->cost || !record.cost || *nominal->shown->cost <= 0) return {};
   return significant_cell(*record.cost / *nominal->shown->cost, 6);
 }
 
-// Relative, so that it does not depend on the scale of J; without meaning when the best J is zero.
-Cell gap_to_best(const std::optional<double>& best, const RunRecord& record) {
-  if (!best || !record.cost || *best <= 0) return {};
-  return significant_cell((*record.cost - *best) / *best, 3);
-}
+// The J that others are measured against: the lowest known, else the lowest of these records.
+struct GapReference {
+  std::optional<double> known, best;
+  explicit GapReference(const Comparison& comparison)
+      : known(known_cost(comparison)), best(comparison.best_cost()) {}
 
-std::vector<Column> cost_columns() {
+  const char* name() const { return known ? "gap to optimum" : "gap to best"; }
+  std::string note() const {
+    if (!known) return "Gap to best: (J - J_best) / J_best with the lowest J of this table's records.";
+    return *known != 0
+               ? fmt::format("Gap to optimum: (J - J*) / |J*| with the lowest known J* = {:.10g}.", *known)
+               : std::string("Gap to optimum: J itself, since the lowest known J is 0.");
+  }
+  // Relative, so that it does not depend on the scale of J; without meaning when the best J of the records is zero.
+  Cell cell(const ComparisonRow& row) const {
+    const std::optional<double>& cost = row.shown->cost;
+    const double from = known.value_or(best.value_or(0));
+    if (!cost || (!known && from <= 0)) return {};
+    const double unit = from == 0 ? 1.0 : std::abs(from);
+    const double noise = std::max(cost_noise(row).value_or(0), kRepeats * std::abs(*cost));
+    return with_noise(significant_cell((*cost - from) / unit, 3), noise / unit);
+  }
+};
+
+std::vector<Column> cost_columns(const GapReference& gap) {
   return {column("parameters", "parameters", "", "", Align::Left),
           best_if(Better::Lower, column("cost", "J", "", "cost", Align::Right, "$J$")),
           column("cost_ratio", "J / J_nominal", "", "cost", Align::Right, "$J / J_{\\mathrm{nominal}}$"),
-          best_if(Better::Lower, column("gap", "gap to best", "", "cost"))};
+          best_if(Better::Lower, column("gap", gap.name(), "", "cost"))};
 }
 
-constexpr const char* kGapNote =
-    "Gap to best: (J - J_best) / J_best with the lowest J of this table's records.";
-
-std::vector<Cell> solver_row(const Comparison& comparison, const ComparisonRow& row,
-                             const std::optional<double>& best, bool polished) {
+std::vector<Cell> solver_row(const Comparison& comparison, const ComparisonRow& row, const GapReference& gap,
+                             bool polished) {
   const RunRecord& record = *row.shown;
-  std::vector<Cell> cells{text_cell(row.label), cost_cell(record.cost), ratio_to_nominal(comparison, record),
-                          gap_to_best(best, record)};
+  std::vector<Cell> cells{text_cell(row.label), with_noise(cost_cell(record.cost), cost_noise(row)),
+                          ratio_to_nominal(comparison, record), gap.cell(row)};
   if (polished) cells.push_back(cost_cell(record.cost_before_polish));
   if (row.kind == "run") {
-    cells.push_back(count_cell(static_cast<double>(record.evaluations)));
+    cells.push_back(with_noise(count_cell(static_cast<double>(record.evaluations)),
+                               noise_over_runs(row, [](const RunRecord& run) {
+                                 return std::optional<double>(static_cast<double>(run.evaluations));
+                               })));
     cells.push_back(count_cell(static_cast<double>(record.iterations)));
-    cells.push_back(fixed_cell(record.seconds, 3));
+    cells.push_back(with_noise(fixed_cell(record.seconds, 3), timing_noise(row)));
     cells.push_back(text_cell(record.termination));
   } else {
     cells.insert(cells.end(), 3, Cell{});
@@ -94,7 +128,9 @@ void append_spread(std::vector<Cell>& cells, const std::vector<double>& values, 
     return;
   }
   const Spread s = spread(values);
-  for (double value : {s.median, s.min, s.max, s.interquartile_range()}) cells.push_back(make(value));
+  for (double value : {s.median, s.min, s.max})
+    cells.push_back(with_noise(make(value), s.interquartile_range()));
+  cells.push_back(make(s.interquartile_range()));
 }
 
 void append_spread_columns(std::vector<Column>& columns, const std::string& id, const std::string& name,
@@ -102,7 +138,14 @@ void append_spread_columns(std::vector<Column>& columns, const std::string& id, 
   columns.push_back(best_if(Better::Lower, column(id + "_median", name + " median", unit, id)));
   columns.push_back(best_if(Better::Lower, column(id + "_min", "min", unit, id)));
   columns.push_back(best_if(Better::Lower, column(id + "_max", "max", unit, id)));
-  columns.push_back(best_if(Better::Lower, column(id + "_iqr", "IQR", unit, id)));
+  columns.push_back(column(id + "_iqr", "IQR", unit, id));
+}
+
+// k of n runs; noise: the binomial standard deviation at (k + 1) / (n + 2), which is not zero for none or all.
+Cell share_cell(double k, std::size_t runs) {
+  const auto n = static_cast<double>(runs);
+  const double p = (k + 1) / (n + 2);
+  return with_noise(count_cell(k), std::sqrt(n * p * (1 - p)));
 }
 
 std::vector<Cell> repeats_row(const ComparisonRow& row, const std::optional<double>& best, double scale) {
@@ -113,9 +156,9 @@ std::vector<Cell> repeats_row(const ComparisonRow& row, const std::optional<doub
     seconds.push_back(run->seconds);
   }
   std::vector<Cell> cells{text_cell(row.label), count_cell(static_cast<double>(row.runs.size())),
-                          count_cell(static_cast<double>(row.runs.size() - costs.size()))};
+                          share_cell(static_cast<double>(row.runs.size() - costs.size()), row.runs.size())};
   for (double relative : {1e-6, 1e-2})
-    cells.push_back(best ? count_cell(count_within(row, *best, scale, relative)) : Cell{});
+    cells.push_back(best ? share_cell(count_within(row, *best, scale, relative), row.runs.size()) : Cell{});
   append_spread(cells, costs, [](double v) { return significant_cell(v, kSpreadDigits); });
   append_spread(cells, evaluations, [](double v) { return significant_cell(v, 9); });
   append_spread(cells, seconds, [](double v) { return fixed_cell(v, 3); });
@@ -128,7 +171,8 @@ Table solver_table(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "solvers";
   table.title = fmt::format("Solvers{}", comparison.title_suffix);
-  table.columns = cost_columns();
+  const GapReference gap(comparison);
+  table.columns = cost_columns(gap);
   table.columns.front().id = table.columns.front().name = "solver";
   const bool polished =
       std::any_of(comparison.rows.begin(), comparison.rows.end(),
@@ -140,12 +184,11 @@ Table solver_table(const Comparison& comparison) {
   table.columns.push_back(column("termination", "stop", "", "stop", Align::Left));
   table.columns.push_back(column("message", "reason", "", "stop", Align::Left));
   table.columns.push_back(column("active_bounds", "active bounds", "", "stop", Align::Left));
-  const std::optional<double> best = comparison.best_cost();
   for (const ComparisonRow& row : comparison.rows) {
     add_reference(table, row);
-    table.rows.push_back(solver_row(comparison, row, best, polished));
+    table.rows.push_back(solver_row(comparison, row, gap, polished));
   }
-  table.notes.push_back(kGapNote);
+  table.notes.push_back(gap.note());
   if (const std::string median = median_note(comparison); !median.empty()) table.notes.push_back(median);
   return table;
 }
@@ -154,16 +197,16 @@ Table cost_table(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "cost";
   table.title = fmt::format("Cost{}", comparison.title_suffix);
-  table.columns = cost_columns();
+  const GapReference gap(comparison);
+  table.columns = cost_columns(gap);
   table.columns.push_back(column("active_bounds", "active bounds", "", "", Align::Left));
-  const std::optional<double> best = comparison.best_cost();
   for (const ComparisonRow& row : comparison.rows) {
     add_reference(table, row);
-    table.rows.push_back({text_cell(row.label), cost_cell(row.shown->cost),
-                          ratio_to_nominal(comparison, *row.shown), gap_to_best(best, *row.shown),
+    table.rows.push_back({text_cell(row.label), with_noise(cost_cell(row.shown->cost), cost_noise(row)),
+                          ratio_to_nominal(comparison, *row.shown), gap.cell(row),
                           text_cell(active_bounds(*row.shown))});
   }
-  if (comparison.rows.size() > 1) table.notes.push_back(kGapNote);
+  if (comparison.rows.size() > 1) table.notes.push_back(gap.note());
   return table;
 }
 

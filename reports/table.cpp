@@ -44,6 +44,63 @@ void check(const Table& table) {
                                               table.rows[i].size(), table.columns.size()));
 }
 
+double rounding_of(const Cell& cell) {
+  return kRepeats * std::abs(*cell.value);
+}
+double noise_of(const Cell& cell) {
+  return std::max(cell.noise.value_or(0.0), rounding_of(cell));
+}
+
+// The number of the reference row, where there is exactly one and it is finite.
+std::optional<double> reference_of(const Table& table, std::size_t column) {
+  if (table.references.size() != 1) return std::nullopt;
+  const std::optional<double>& value = table.rows[table.references.front()][column].value;
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+void mark_column(Table& table, std::size_t column) {
+  const double sign = table.columns[column].better == Better::Higher ? -1 : 1;
+  const std::optional<double> reference = reference_of(table, column);
+  std::vector<Cell*> competing;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& none = table.references;
+    Cell& cell = table.rows[i][column];
+    if (!cell.value || std::find(none.begin(), none.end(), i) != none.end()) continue;
+    if (reference)
+      cell.worse = !std::isfinite(*cell.value) || sign * (*cell.value - *reference) > noise_of(cell);
+    if (std::isfinite(*cell.value)) competing.push_back(&cell);
+  }
+  if (competing.size() < 2) return;
+  const Cell* best =
+      *std::min_element(competing.begin(), competing.end(),
+                        [sign](const Cell* a, const Cell* b) { return sign * *a->value < sign * *b->value; });
+  double noise = noise_of(*best);
+  for (const Cell* cell : competing)
+    if (std::abs(*cell->value - *best->value) <= rounding_of(*best)) noise = std::min(noise, noise_of(*cell));
+  if (reference && !(sign * (*reference - *best->value) > noise)) return;
+  const std::string shown = cell_text(*best).head;
+  const auto ties = [&](const Cell* cell) {
+    return std::abs(*cell->value - *best->value) <= noise || cell_text(*cell).head == shown;
+  };
+  if (std::all_of(competing.begin(), competing.end(), ties)) return;
+  for (Cell* cell : competing) cell->best = ties(cell);
+}
+
+// For the formats that people read: what is best and what is worse than nominal, explained below the first table that needs it.
+void mark_for_people(std::vector<Table>& tables, Format format) {
+  bool explained = false;
+  for (Table& table : tables) {
+    mark_best(table);
+    const std::string note = worse_note(table);
+    if (!note.empty() && !explained) table.notes.insert(table.notes.begin(), note);
+    explained = explained || !note.empty();
+    if (format != Format::Latex) continue;
+    for (auto& row : table.rows)
+      for (Cell& cell : row)
+        if (cell.worse) cell.mark += "!";
+  }
+}
+
 }  // namespace
 
 Cell text_cell(std::string text) {
@@ -85,31 +142,22 @@ Column best_if(Better better, Column column) {
 }
 
 void mark_best(Table& table) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const double sign = table.columns[c].better == Better::Higher ? -1 : 1;
-    if (table.columns[c].better == Better::None) continue;
-    std::vector<Cell*> competing;
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      const auto& none = table.references;
-      Cell& cell = table.rows[i][c];
-      const bool takes_part = cell.value && std::isfinite(*cell.value);
-      if (takes_part && std::find(none.begin(), none.end(), i) == none.end()) competing.push_back(&cell);
-    }
-    if (competing.size() < 2) continue;
-    const Cell* best = *std::min_element(
-        competing.begin(), competing.end(),
-        [sign](const Cell* a, const Cell* b) { return sign * *a->value < sign * *b->value; });
-    const std::string shown = cell_text(*best).head;
-    const auto reads_the_same = [&](const Cell* cell) { return cell_text(*cell).head == shown; };
-    if (std::all_of(competing.begin(), competing.end(), reads_the_same)) continue;
-    for (Cell* cell : competing) cell->best = reads_the_same(cell);
-  }
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].better != Better::None) mark_column(table, c);
+}
+
+std::string worse_note(const Table& table) {
+  for (const auto& row : table.rows)
+    for (const Cell& cell : row)
+      if (cell.worse)
+        return fmt::format("!: worse than {}.", cell_text(table.rows[table.references.front()].front()).head);
+  return "";
 }
 
 std::string render(const std::vector<Table>& given, Format format, const RenderOptions& options) {
   for (const Table& table : given) check(table);
   std::vector<Table> tables = given;
-  for (Table& table : tables) mark_best(table);
+  if (format != Format::Csv && format != Format::Json) mark_for_people(tables, format);
   switch (format) {
     case Format::Console:
       return render_console(tables, options);

@@ -26,7 +26,11 @@ struct Cell {
   Notation notation = Notation::Fixed;
   std::optional<double> difference;  // to a reference; same notation, signed, in brackets
   std::string mark;                  // short sign after the number, explained in a note
-  bool best = false;                 // of its column, see mark_best
+  // What another repetition may change about the number: the spread over repeats, infinity where there was one only of something
+  // random; none: it repeats up to rounding (kRepeats of it).
+  std::optional<double> noise;
+  bool best = false;   // of its column, see mark_best
+  bool worse = false;  // than the reference row, see mark_best
 
   bool empty() const { return text.empty() && !value; }
 };
@@ -60,10 +64,18 @@ struct Table {
   std::vector<std::size_t> references = {};  // rows that do not compete for the best value: nominal, a bound
 };
 
-// Sets Cell::best in the columns that have a better direction: the lowest (highest) finite number of the rows that are no
-// references, and every other that reads the same. Where all read the same, or only one row competes, nothing is best. render()
-// does so itself for the formats that people read.
+// Numbers that repeat, relative: what compilers and processors change about them.
+inline constexpr double kRepeats = 1e-9;
+
+// In the columns that have a better direction, among the rows that are no references:
+//   Cell::best   the lowest (highest) finite number and those that tie with it, if it is better than the reference row (where there is
+//                exactly one) and than all others by more than its own noise. What ties: reads the same, or differs by at most that
+//                noise; of numbers that differ by rounding only, the least noisy one speaks. Where all tie, nothing is best.
+//   Cell::worse  worse than the reference row by more than its noise, or not finite though that is.
+// render() does so itself for the formats that people read.
 void mark_best(Table& table);
+// "!: worse than nominal." where a cell is, else "".
+std::string worse_note(const Table& table);
 
 enum class Format { Console, Markdown, Csv, Json, Latex };
 

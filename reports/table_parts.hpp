@@ -18,6 +18,12 @@ std::optional<Table> error_overview(const Comparison& comparison);
 // Lower bound, nominal, upper bound, then the labels; mm with 3 decimals where the unit is m, else 6
 // significant digits. Empty without error tables: test functions have no parameters worth reading.
 std::optional<Table> parameter_table(const Comparison& comparison);
+// How many mean errors e_sr (trajectories times x, y, theta) of a row are above those of the nominal parameters.
+struct WorseMeans {
+  int worse = 0, all = 0;
+};
+WorseMeans worse_means(const ComparisonRow& row, const ComparisonRow& nominal);
+
 // Thesis table 42. A label that lacks a trajectory has no sums.
 std::optional<Table> totals_table(const Comparison& comparison);
 

@@ -16,6 +16,8 @@
 namespace odobench {
 namespace {
 
+constexpr double kHardlyDamped = 1e8;  // a trust-region radius
+
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Ceres writes warnings about rejected steps to the standard error through glog, whatever its own logging options
@@ -156,7 +158,7 @@ struct Round {
 };
 
 // One call of Ceres on the free coordinates of work.u, which receives the result.
-Round solve_free(Workspace& work, const CeresOptions& options, int iterations) {
+Round solve_free(Workspace& work, const CeresOptions& options, double radius, int iterations) {
   std::vector<double> x;
   for (Eigen::Index i : work.free) x.push_back(work.u[i]);
   Residuals residuals(work);
@@ -173,7 +175,7 @@ Round solve_free(Workspace& work, const CeresOptions& options, int iterations) {
   settings.trust_region_strategy_type = options.strategy == "lm" ? ceres::LEVENBERG_MARQUARDT : ceres::DOGLEG;
   settings.linear_solver_type = ceres::DENSE_QR;
   settings.dense_linear_algebra_library_type = ceres::EIGEN;
-  settings.initial_trust_region_radius = options.radius;
+  settings.initial_trust_region_radius = radius;
   settings.max_num_iterations = iterations;
   settings.function_tolerance = options.cost_tolerance;
   settings.gradient_tolerance = 0;  // absolute in Ceres; RoundControl has one that does not depend on scale
@@ -224,7 +226,7 @@ Outcome no_progress(const std::string& how, double cosine) {
 // Ceres as it comes.
 Outcome single_round(Workspace& work, const CeresOptions& options) {
   for (Eigen::Index i = 0; i < work.u.size(); ++i) work.free.push_back(i);
-  const Round result = solve_free(work, options, options.iterations);
+  const Round result = solve_free(work, options, options.radius, options.iterations);
   if (!refresh(work)) return broken(work);
   const double cosine = projected_cosine(work.u, work.e);
   if (cosine <= options.gradient_tolerance) return settled(cosine, options, 1);
@@ -237,6 +239,7 @@ Outcome single_round(Workspace& work, const CeresOptions& options) {
 Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
   int left = options.iterations;
   bool release = true;
+  double radius = options.radius;
   double last_cost = std::numeric_limits<double>::infinity();
   for (int round = 1;; ++round) {
     if (work.e.cost == 0) return {Termination::Settled, "cost 0: an exact fit"};
@@ -254,9 +257,12 @@ Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
       release = true;
       continue;
     }
-    const Round result = solve_free(work, options, left);
+    const Round result = solve_free(work, options, radius, std::min(left, options.round_iterations));
     if (!refresh(work)) return broken(work);
     left -= std::max(1, result.iterations);
+    // Ceres scales its damping by the present columns of J: where they shrink fast it creeps, and hardly damped steps get on.
+    if (result.iterations >= options.round_iterations)
+      radius = radius == options.radius ? kHardlyDamped : options.radius;
     release = !result.arrived;
   }
 }
@@ -306,6 +312,10 @@ void CeresOptions::bind(OptionBinder& binder) {
   binder.number("cost_tolerance", cost_tolerance,
                 "a round ends when the cost decreases by at most this times itself", 0, 1);
   binder.integer("iterations", iterations, "iteration limit over all rounds", 1);
+  binder.integer(
+      "round_iterations", round_iterations,
+      "a round this long is broken off, and the next begins hardly damped (radius 1e8), or with radius again",
+      1);
 }
 
 std::string CeresSolver::why_not(const Problem& problem) const {

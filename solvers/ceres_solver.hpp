@@ -25,6 +25,7 @@ struct CeresOptions {
   double gradient_tolerance = 1e-10;
   double cost_tolerance = 1e-16;
   int iterations = 1000;
+  int round_iterations = 300;
   void bind(OptionBinder& binder);
   void validate() const {}
 };

@@ -2,7 +2,8 @@
 
 namespace odobench {
 
-// Left out: NEWUOA without bounds (leaves the box), LBFGS_NOCEDAL (not built into 2.7.1), and the AUGLAG family (an
+// Left out: NLopt's NEWUOA with bounds (its subproblem, an MMA run without limit or stop, may never return; the one without bounds
+// runs on folded coordinates instead), LBFGS_NOCEDAL (not built into 2.7.1), and the AUGLAG family (an
 // augmented Lagrangian of constraints other than bounds, which no problem here has). The MLSL variants with built-in
 // choice of the local method are the two MLSL rows with local=...
 const std::vector<NloptAlgorithm>& nlopt_algorithms() {
@@ -51,10 +52,9 @@ const std::vector<NloptAlgorithm>& nlopt_algorithms() {
              "conservative convex separable quadratic approximation (Svanberg 2002)");
     simple("bobyqa", NLOPT_LN_BOBYQA, "derivative-free quadratic models in a box (Powell 2009)");
     {
-      NloptAlgorithm& row = simple("newuoa", NLOPT_LN_NEWUOA_BOUND,
-                                   "derivative-free quadratic models, NLopt's bounds (Powell 2004)");
-      row.scalar_step = row.not_for_one = true;
-      row.least_xtol = 1e-8;
+      NloptAlgorithm& row =
+          simple("newuoa", NLOPT_LN_NEWUOA, "derivative-free quadratic models, bounds folded (Powell 2004)");
+      row.scalar_step = row.not_for_one = row.folded = true;
     }
     simple("cobyla", NLOPT_LN_COBYLA, "derivative-free linear models (Powell 1994)");
     simple("neldermead", NLOPT_LN_NELDERMEAD, "Nelder-Mead simplex with bounds (Box 1965)");

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 
+#include "solvers/boundary_map.hpp"
 #include "solvers/nlopt_algorithms.hpp"
 #include "solvers/optimality.hpp"
 
@@ -18,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far below.
 constexpr double kStopValue = -1e200;
 constexpr double kBelowStopValue = -1e250;
+constexpr double kFold = 0.5;  // width of the bent zone for methods without bounds, in units of half the box
 constexpr int kMostBrokenOff = 1000;
 struct LeaveStogo {};  // StoGO is C++ with automatic storage: an exception leaves it cleanly
 
@@ -47,7 +49,8 @@ class Objective {
   // Costs are divided by this one from now on; what was remembered in the old unit is forgotten.
   void set_scale(double cost) {
     if (!std::isfinite(cost) || cost == 0) return;
-    scale_ = 1.0 / std::abs(cost);
+    // The inverse of a denormal number is infinite.
+    scale_ = std::min(1.0 / std::abs(cost), std::numeric_limits<double>::max());
     worst_ = 0;
     lowest_ = kInfinity;
     gradient_.resize(0);
@@ -78,7 +81,8 @@ class Objective {
     try {
       if (!error_ && !run_.stop()) {
         ++evaluations_;
-        const Eigen::Map<const Vector> u(x, m);
+        const Eigen::Map<const Vector> at(x, m);
+        const Vector u = algorithm_.folded ? Vector(BoundaryMap(kFold).to_box(at)) : Vector(at);
         if (gradient != nullptr) {
           g.resize(m);
           cost = run_.cost_and_gradient(u, g);
@@ -91,8 +95,8 @@ class Objective {
       error_ = std::current_exception();
     }
     if (error_ || run_.stop()) return leave(n);
-    if (!std::isfinite(cost)) return worst_ + std::abs(worst_) + 1.0;
     const double value = scale_ * cost;
+    if (!std::isfinite(value)) return worst_ + std::abs(worst_) + 1.0;
     worst_ = std::max(worst_, value);
     if (gradient != nullptr) {
       Eigen::Map<Vector>(gradient, m) = scale_ * g;
@@ -151,8 +155,10 @@ Handle make_handle(const NloptOptions& options, Objective& objective, Eigen::Ind
   const auto n = static_cast<unsigned>(dimension);
   Handle handle(nlopt_create(algorithm.id, n), &nlopt_destroy);
   if (!handle) throw std::runtime_error(fmt::format("NLopt: no memory for {} parameters", n));
-  nlopt_set_lower_bounds1(handle.get(), -1.0);
-  nlopt_set_upper_bounds1(handle.get(), 1.0);
+  if (!algorithm.folded) {
+    nlopt_set_lower_bounds1(handle.get(), -1.0);
+    nlopt_set_upper_bounds1(handle.get(), 1.0);
+  }
   nlopt_set_min_objective(handle.get(), &Objective::call, &objective);
   set_tolerances(handle.get(), options.xtol, options.ftol);
   if (algorithm.statics && !algorithm.gradient) nlopt_set_stopval(handle.get(), kStopValue);
@@ -188,9 +194,11 @@ std::string in_words(nlopt_result code, const NloptOptions& options) {
 }
 
 // One call of NLopt from the best point so far.
-nlopt_result start_once(Run& run, nlopt_opt handle, const Objective& objective, int evaluations) {
+nlopt_result start_once(Run& run, nlopt_opt handle, const Objective& objective, bool folded,
+                        int evaluations) {
   nlopt_set_maxeval(handle, evaluations);
   Vector u = run.has_best() ? run.best() : run.start();
+  if (folded) u = BoundaryMap(kFold).from_box(u);
   double value = 0;
   nlopt_result code = NLOPT_FORCED_STOP;
   try {
@@ -219,8 +227,7 @@ double slope_on_bounds(Run& run, const Objective& objective, double xtol) {
 }  // namespace
 
 void NloptOptions::bind(OptionBinder& binder) {
-  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box",
-                algorithm->least_xtol, 1);
+  binder.number("xtol", xtol, "stop when the parameters change by at most this part of the box", 0, 1);
   binder.number("ftol", ftol, "stop when the cost changes by at most this times itself", 0, 1);
   binder.integer("evaluations", evaluations, "evaluation limit of its own", 1);
   if (algorithm->gradient && !algorithm->global)
@@ -277,7 +284,7 @@ Outcome NloptSolver::minimise(Run& run) const {
     if (left <= 0)
       return {Termination::IterationLimit, fmt::format("{} evaluations >= limit {} of the method",
                                                        objective.evaluations(), options_.evaluations)};
-    const nlopt_result code = start_once(run, handle.get(), objective, left);
+    const nlopt_result code = start_once(run, handle.get(), objective, algorithm.folded, left);
     if (run.stop()) return {};
     if (code == NLOPT_INVALID_ARGS || code == NLOPT_OUT_OF_MEMORY) {
       const char* detail = nlopt_get_errmsg(handle.get());
@@ -319,7 +326,6 @@ std::vector<SolverEntry> nlopt_entries() {
     if (row.gradient && !row.global) defaults.evaluations = 10000;
     if (row.global) defaults.ftol = 0;            // one generation without progress is no reason to stop
     if (row.local) defaults.evaluations = 20000;  // its own work grows with their square
-    if (row.least_xtol > 0) defaults.xtol = 10 * row.least_xtol;
     if (row.scalar_step) defaults.step = 0.25;
     defaults.memory = 100;
     entries.push_back(

@@ -10,6 +10,7 @@
 #include "solvers/box.hpp"
 #include "solvers/box_active_set.hpp"
 #include "solvers/box_quadratic.hpp"
+#include "solvers/derivative_check.hpp"
 #include "solvers/linear_model.hpp"
 #include "solvers/optimality.hpp"
 #include "solvers/rounding.hpp"
@@ -162,6 +163,18 @@ std::optional<OptimalityCheck> check_optimality(const Problem& problem, const Co
   }
   check.evaluations = own.counts().total();
   return check;
+}
+
+std::optional<double> promise_by_differences(const Problem& problem, const ConstVectorRef& x) {
+  const Problem own = problem;
+  const Box box(own.parameters());
+  const Matrix j = difference_jacobian(own, x);
+  if (j.size() == 0 || box.dimension() == 0) return std::nullopt;
+  Vector r(own.residual_count());
+  own.residuals(x, r);
+  if (r.cwiseAbs().maxCoeff() == 0) return 0;
+  const Vector u = box.to_unit(x);
+  return promised_gain(linear_model(r, box.jacobian_to_unit(j)), room_below(u), room_above(u));
 }
 
 double bounded_promise(const Vector& u, const NormalEquations& e) {

@@ -196,6 +196,29 @@ TEST(Baseline, MissingAndAdditionalLabels) {
   EXPECT_THAT(report.table.notes, ElementsAre("54 values compared: passed."));
 }
 
+// A gate that looks at nothing holds nothing.
+TEST(Baseline, NothingToCompareFails) {
+  const std::vector<RunRecord> records{run_record("lm", 1)};
+  Baseline baseline = make_baseline(records);
+  baseline.entries.clear();
+  const BaselineReport report = check_baseline(baseline, records);
+  EXPECT_FALSE(report.passed);
+  EXPECT_EQ(report.compared, 0u);
+  EXPECT_THAT(report.table.notes.back(), HasSubstr("nothing to compare, which fails"));
+}
+
+TEST(Baseline, AnotherBoxIsAnotherProblem) {
+  std::vector<RunRecord> records{run_record("lm", 1)};
+  records[0].box = "0123456789abcdef";
+  const Baseline baseline = make_baseline(records);
+  EXPECT_THAT(to_json_text(baseline), HasSubstr("\"box\": \"0123456789abcdef\""));
+  EXPECT_TRUE(check_baseline(baseline, records).passed);
+  records[0].box.clear();  // an older record does not say
+  EXPECT_TRUE(check_baseline(baseline, records).passed);
+  records[0].box = "fedcba9876543210";
+  EXPECT_FALSE(check_baseline(baseline, records).passed);
+}
+
 TEST(Baseline, LabelsOfOtherProblemsAreOthers) {
   auto found = records();
   found[3].problem = "rosenbrock";

@@ -254,7 +254,7 @@ TEST(Cli, TakesOptionsFromConfigFiles) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const std::vector<RunRecord> records = read_records(out + "/runs.jsonl");
     ASSERT_THAT(labels_of(records), ElementsAre("lm", "lm[lambda=0.1]")) << file;
-    EXPECT_EQ(records[0].problem, "rosenbrock");
+    EXPECT_EQ(records[0].problem, "rosenbrock[n=2]");  // not its usual dimension
     EXPECT_LE(records[0].evaluations, 30);
   }
 }

@@ -71,6 +71,75 @@ TEST_F(CliCompare, AGateThatComparesNothingFails) {
   EXPECT_THAT(half.err, Not(HasSubstr("'pso'")));
 }
 
+// The title says what the exit code says, also where what can be compared is fine.
+TEST_F(CliCompare, TheTitleAgreesWithTheExitCode) {
+  std::vector<RunRecord> both = repeats("pso", 1);
+  for (const RunRecord& r : repeats("lm", 1)) both.push_back(r);
+  const ProcessResult half =
+      run_bench({"compare", file("a.jsonl", both), file("b.jsonl", repeats("pso", 1)), "--fail-on=J:+0.1%"});
+  EXPECT_EQ(half.exit_code, 1);
+  EXPECT_THAT(half.out, HasSubstr("Failed: nothing to compare: no partner on the new side for 'lm'"));
+  EXPECT_THAT(half.out, Not(HasSubstr("Passed")));
+}
+
+TEST_F(CliCompare, AnotherBoxIsAnotherProblem) {
+  std::vector<RunRecord> before = repeats("pso", 1), after = repeats("pso", 2);
+  for (RunRecord& r : before) r.box = "0123456789abcdef";
+  for (RunRecord& r : after) r.box = "fedcba9876543210";
+  const std::string a = file("a.jsonl", before), b = file("b.jsonl", after);
+  const ProcessResult run = run_bench({"compare", a, b, "--format=csv"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("pso,sphere,,all,old,another dimension or box\r\n"));
+  EXPECT_EQ(run_bench({"compare", a, b, "--fail-on=J:+900%"}).exit_code, 1);
+  // Side by side in one report they keep apart, too.
+  const ProcessResult report = run_bench({"report", a, b});
+  EXPECT_THAT(report.out, HasSubstr("sphere, @01234567"));
+}
+
+TEST_F(CliCompare, ASmallerBudgetIsNotBetterEffort) {
+  std::vector<RunRecord> before = repeats("pso", 1), after = repeats("pso", 1);
+  for (RunRecord& r : before) {
+    r.budget = {{"max_evaluations", 50000}};
+    r.evaluations += 40000;
+  }
+  for (RunRecord& r : after) {
+    r.budget = {{"max_evaluations", 500}};
+    r.termination = "max_evaluations";
+  }
+  const ProcessResult run =
+      run_bench({"compare", file("a.jsonl", before), file("b.jsonl", after), "--format=json"});
+  const auto tables = nlohmann::json::parse(run.out).at("tables");
+  EXPECT_EQ(tables.at(0).at("rows").at(0).at("better"), 0) << run.out;
+  EXPECT_EQ(tables.at(1).at("rows").at(0).at("metric"), "evaluations");
+  EXPECT_EQ(tables.at(1).at("rows").at(0).at("finding"), "changed");
+}
+
+TEST_F(CliCompare, TheSameRecordReadTwiceCountsOnce) {
+  const std::string runs = file("a.jsonl", repeats("pso", 1)), more = file("b.jsonl", repeats("pso", 1, 12));
+  const ProcessResult report = run_bench({"report", runs, more, "--json"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(report.err, HasSubstr("10 records were read twice and counted once"));
+  const auto tables = nlohmann::json::parse(report.out).at("tables");
+  EXPECT_EQ(tables.at(1).at("id"), "repeats");
+  EXPECT_EQ(tables.at(1).at("rows").at(0).at("runs"), 12);
+}
+
+TEST_F(CliCompare, ACheckOfNothingFails) {
+  const std::string runs = file("a.jsonl", repeats("pso", 1));
+  const std::string empty =
+      folder_.file("empty.json", R"({"schema_version": 1, "tolerances": {"cost_relative": 1,
+      "error_m": 1, "error_rad": 1, "total": 1, "evaluations_factor": null}, "entries": []})");
+  const ProcessResult run = run_bench({"check", "--baseline=" + empty, runs});
+  EXPECT_EQ(run.exit_code, kData) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("expected at least one entry, found none"));
+  // An entry without a record fails, too.
+  const std::string baseline = (folder_ / "lm.json").string();
+  EXPECT_EQ(
+      run_bench({"check", "--update", "--baseline=" + baseline, file("b.jsonl", repeats("lm", 1))}).exit_code,
+      0);
+  EXPECT_EQ(run_bench({"check", "--baseline=" + baseline, runs}).exit_code, 1);
+}
+
 TEST_F(CliCompare, RegressionFailsOnlyBeyondAStatedLimit) {
   const std::string before = file("a.jsonl", repeats("pso", 1)), after = file("b.jsonl", repeats("pso", 1.5));
   EXPECT_EQ(run_bench({"compare", before, after}).exit_code, 0);

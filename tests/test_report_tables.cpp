@@ -237,7 +237,7 @@ TEST(Render, LatexGroupsAndBlocks) {
   const std::string pages = render({table}, Format::Latex);
   EXPECT_THAT(pages, HasSubstr("\\caption[]{wide, continued}"));
   EXPECT_EQ(pages.find("\\label"), pages.rfind("\\label"));
-  EXPECT_THAT(render({ranking(Better::Lower, {0, 3, 1, 2})}, Format::Latex),
+  EXPECT_THAT(render({ranking(Better::Lower, {9, 3, 1, 2})}, Format::Latex),
               HasSubstr("c & \\bfseries 1.00 \\\\"));
 }
 
@@ -357,23 +357,63 @@ std::string best_rows(Table table) {
 }
 
 TEST(Best, LowestOrHighestOfTheRowsThatCompete) {
-  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 3, 1, 2})), "c");
-  EXPECT_EQ(best_rows(ranking(Better::Higher, {9, 3, 1, 2})), "b");
-  EXPECT_EQ(best_rows(ranking(Better::None, {0, 3, 1, 2})), "");
-  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 1.001, 1.004, 2})), "bc") << "they read the same";
-  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2, 2, 2})), "") << "no best among equals";
-  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, 2})), "") << "only one competes";
-  EXPECT_EQ(best_rows(ranking(Better::Lower, {0, std::nan(""), 2, -kInf, 3})), "c") << "finite ones only";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {9, 3, 1, 2})), "c");
+  EXPECT_EQ(best_rows(ranking(Better::Higher, {0, 3, 1, 2})), "b");
+  EXPECT_EQ(best_rows(ranking(Better::None, {9, 3, 1, 2})), "");
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {9, 1.001, 1.004, 2})), "bc") << "they read the same";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {9, 2, 2, 2})), "") << "no best among equals";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {9, 2})), "") << "only one competes";
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {9, std::nan(""), 2, -kInf, 3})), "c") << "finite ones only";
+}
+
+Table ranked_with_noise(const std::vector<double>& values, const std::vector<double>& noise) {
+  Table table = ranking(Better::Lower, values);
+  for (std::size_t i = 0; i < noise.size(); ++i) table.rows[i][1].noise = noise[i];
+  return table;
+}
+
+TEST(Best, NothingIsBestThatIsNotBetterThanNominal) {
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {1, 1.5, 1.2, 2})), "");
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {1, 1.5, 1, 2})), "");
+  EXPECT_EQ(best_rows(ranking(Better::Lower, {1, 1.5, 0.9, 2})), "c");
+}
+
+TEST(Best, ALeadMustExceedTheNoise) {
+  EXPECT_EQ(best_rows(ranked_with_noise({9, 3, 1, 2}, {0, 0, 0.5, 0})), "c");
+  EXPECT_EQ(best_rows(ranked_with_noise({9, 3, 1, 2}, {0, 0, 1.5, 0})), "cd")
+      << "d is within the noise of c, b is not";
+  EXPECT_EQ(best_rows(ranked_with_noise({9, 3, 1, 2}, {0, 0, 2.5, 0})), "");
+  EXPECT_EQ(best_rows(ranked_with_noise({9, 3, 1, 2}, {0, 0, kInf, 0})), "")
+      << "a single run of something random";
+  // Of numbers that differ by rounding the one that repeats speaks for all.
+  EXPECT_EQ(best_rows(ranked_with_noise({9, 3, 1, 1 + 1e-12}, {0, 0, kInf, 0})), "cd");
+}
+
+TEST(Best, WhatIsWorseThanNominalIsMarkedEverywhere) {
+  Table table = ranking(Better::Lower, {1, 1.5, 0.9, kInf});
+  table.rows[1][1].difference = 0.5;
+  const std::string console = render({table}, Format::Console);
+  EXPECT_THAT(console, HasSubstr("b    1.50 (+0.50) !\n"));
+  EXPECT_THAT(console, HasSubstr("d     inf !\n"));
+  EXPECT_THAT(console, HasSubstr("!: worse than a.\n"));
+  EXPECT_THAT(render({table}, Format::Markdown), HasSubstr("| b | 1.50 (+0.50) ! |"));
+  EXPECT_THAT(render({table}, Format::Markdown), HasSubstr("!: worse than a."));
+  EXPECT_THAT(render({table}, Format::Latex), HasSubstr("!"));
+  EXPECT_THAT(render({table}, Format::Latex), HasSubstr("!: worse than a."));
+  EXPECT_THAT(render({table}, Format::Json), Not(HasSubstr("worse")));
+  EXPECT_THAT(render({ranked_with_noise({1, 1.5, 0.9, 2}, {0, 1, 0, 2})}, Format::Console),
+              Not(HasSubstr("!")));
+  EXPECT_THAT(render({ranking(Better::Higher, {1, 1.5, 0.9, 2})}, Format::Console), HasSubstr("c    0.90 !"));
 }
 
 TEST(Best, EveryFormatForPeopleShowsIt) {
-  Table table = ranking(Better::Lower, {0, 3, 1, 2});
+  Table table = ranking(Better::Lower, {9, 3, 1, 2});
   table.rows[1][1].difference = 2;
   EXPECT_EQ(render({table}, Format::Console), R"(r
 ─────────────────
 key             v
 ─────────────────
-a    0.00
+a    9.00
 b    3.00 (+2.00)
 c    1.00 *
 d    2.00
@@ -386,7 +426,7 @@ d    2.00
   const std::string twice = render({table, table}, Format::Console);
   EXPECT_EQ(twice.find("best of"), twice.rfind("best of")) << "explained once";
   EXPECT_THAT(render({table}, Format::Markdown), HasSubstr("| b | 3.00 (+2.00) |\n| c | **1.00** |\n"));
-  const Table plain = ranking(Better::None, {0, 3, 1, 2});
+  const Table plain = ranking(Better::None, {9, 3, 1, 2});
   table.rows[1][1].difference.reset();
   EXPECT_EQ(render({table}, Format::Csv), render({plain}, Format::Csv));
   EXPECT_EQ(render({table}, Format::Json), render({plain}, Format::Json));

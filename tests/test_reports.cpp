@@ -43,6 +43,10 @@ RunRecord full_record() {
   r.trace = {{1, 0.001, 1135.3322706653605}, {50, 0.1, 1.0 / 3}};
   r.budget = {{"evaluations", 50000}};
   r.group = "steered";
+  r.box = "0123456789abcdef";
+  r.random = true;
+  r.known = KnownAnswer{98.1, 7.5, true, 1e-17};
+  r.check = OptimalityRecord{"a bounded Gauss-Newton step", 1.0 / 3, 1e-8, 1};
   r.statistics = {{"gap_exact_mean", 1.0 / 3}, {"windows", 189}};
   r.series = {{"nees", {1.0 / 3, 2}}};
   r.notes = {"a1 and b1 are barely determined", ""};
@@ -109,7 +113,14 @@ TEST(Record, EveryFieldSurvivesTheRoundTrip) {
   EXPECT_EQ(back.budget, r.budget);
   EXPECT_EQ(back.context.command, r.context.command);
   EXPECT_EQ(back.context.libraries, r.context.libraries);
-  EXPECT_EQ(to_json(r).size(), 33u) << "a new field needs a place in both directions and in this test";
+  EXPECT_EQ(back.box, r.box);
+  EXPECT_EQ(back.random, true);
+  ASSERT_TRUE(back.known && back.check);
+  EXPECT_EQ(back.known->digits, 7.5);
+  EXPECT_EQ(back.known->promise, 1e-17);
+  EXPECT_TRUE(back.known->solved);
+  EXPECT_EQ(back.check->value, 1.0 / 3);
+  EXPECT_EQ(to_json(r).size(), 37u) << "a new field needs a place in both directions and in this test";
 }
 
 TEST(Record, DoublesKeepEveryBit) {
@@ -169,13 +180,18 @@ TEST(Record, EveryMissingFieldIsNamed) {
     auto broken = complete;
     broken.erase(field.key());
     if (field.key() == "notes" || field.key() == "group" || field.key() == "statistics" ||
-        field.key() == "series" || field.key() == "budget") {
+        field.key() == "series" || field.key() == "budget" || field.key() == "box" ||
+        field.key() == "random" || field.key() == "known" || field.key() == "check") {
       const RunRecord without = record_from_json(broken);
       EXPECT_EQ(without.notes.empty(), field.key() == "notes");
       EXPECT_EQ(without.group.empty(), field.key() == "group");
       EXPECT_EQ(without.statistics.empty(), field.key() == "statistics");
       EXPECT_EQ(without.series.empty(), field.key() == "series");
       EXPECT_EQ(without.budget.empty(), field.key() == "budget");
+      EXPECT_EQ(without.box.empty(), field.key() == "box");
+      EXPECT_EQ(!without.random, field.key() == "random");
+      EXPECT_EQ(!without.known, field.key() == "known");
+      EXPECT_EQ(!without.check, field.key() == "check");
       continue;
     }
     EXPECT_THAT([&] { record_from_json(broken); },

@@ -85,4 +85,12 @@ double log_relative_error(const ConstVectorRef& x, const std::vector<Vector>& mi
   return best;
 }
 
+bool reaches_known_optimum(const Problem& problem, const ConstVectorRef& x, double cost) {
+  if (!problem.known_optimum())
+    throw std::logic_error(fmt::format("problem '{}' has no known optimum", problem.name()));
+  if (problem.name().rfind("nist:", 0) == 0) return log_relative_error(x, problem.known_minimisers()) >= 6;
+  const double best = *problem.known_optimum();
+  return cost - best <= std::max(1e-6 * std::abs(best), 1e-12);
+}
+
 }  // namespace odobench

@@ -130,11 +130,20 @@ void KalmanFilter<M>::require_finite(const char* where) const {
 template <class M>
 template <int Z>
 void KalmanFilter<M>::measure_innovation(Innovation<Z>& out, double gate) {
-  double det = 1;
-  for (Eigen::Index i = 0; i < out.nu.size(); ++i) det *= out.factor(i, i);
-  if (!(det > 0) || !std::isfinite(det))
-    throw std::runtime_error("filter: the innovation has no positive definite covariance");
-  out.log_det = 2 * std::log(det);
+  // log of the product of the diagonal: taken apart before many small or large factors leave the range of doubles.
+  double product = 1, log_sum = 0;
+  for (Eigen::Index i = 0; i < out.nu.size(); ++i) {
+    const double factor = out.factor(i, i);
+    if (!(factor > 0) || !std::isfinite(factor))
+      throw std::runtime_error("filter: the innovation has no positive definite covariance");
+    if (const double next = product * factor; next > 1e-290 && next < 1e290) {
+      product = next;
+    } else {
+      log_sum += std::log(product);
+      product = factor;
+    }
+  }
+  out.log_det = 2 * (log_sum + std::log(product));
   out.nis = forward_solved<Z, 1>(out.factor, out.nu).squaredNorm();
   if (!std::isfinite(out.nis)) throw std::runtime_error("filter: a measurement is not finite");
   out.accepted = out.nis <= gate;

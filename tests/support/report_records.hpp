@@ -19,6 +19,7 @@ inline RunRecord run_record(const std::string& label, double cost, int repetitio
   r.kind = "run";
   r.repetition = repetition;
   r.start = "nominal";
+  r.random = label.rfind("pso", 0) == 0 || label.rfind("ga", 0) == 0;
   r.termination = "converged";
   r.message = "gradient 1e-11 <= 1e-10";
   r.cost = cost;
