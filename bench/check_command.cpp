@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
@@ -41,9 +42,14 @@ ExitCode check_command(const CheckOptions& options) {
   const Format format = parse_format(options.format);
   const std::vector<RunRecord> records = read_all_records(options.runs);
   if (options.update) {
-    Tolerances tolerances;
-    if (std::filesystem::exists(options.baseline)) tolerances = read_baseline(options.baseline).tolerances;
-    const Baseline baseline = make_baseline(records, tolerances);
+    Baseline before;
+    if (std::filesystem::exists(options.baseline)) before = read_baseline(options.baseline);
+    Baseline baseline = make_baseline(records, before.tolerances);
+    for (BaselineEntry& entry : baseline.entries)
+      for (const BaselineEntry& old : before.entries)
+        if (std::tie(old.problem, old.dataset, old.label) ==
+            std::tie(entry.problem, entry.dataset, entry.label))
+          entry.tolerances = old.tolerances;
     write_file(options.baseline, to_json_text(baseline));
     note(fmt::format("{}: {} entries written", options.baseline, baseline.entries.size()));
     if (format == Format::Json) print_tables({written_table({options.baseline})}, format);

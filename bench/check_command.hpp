@@ -12,7 +12,7 @@ namespace odobench {
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs);
 
 // Prints what moved against the baseline; CheckFailed when something did. With `update` writes the baseline
-// instead, keeping the tolerances of the one that is there.
+// instead, keeping the tolerances of the one that is there, those of single entries included.
 ExitCode check_command(const CheckOptions& options);
 
 }  // namespace odobench

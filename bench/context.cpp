@@ -8,6 +8,7 @@
 
 #include "bench/git_revision.hpp"
 #include "bench/option_values.hpp"
+#include "reports/web_assets.hpp"
 #include "solvers/library_versions.hpp"
 
 namespace odobench {
@@ -65,8 +66,10 @@ std::string utc_now() {
 }
 
 std::string version_line() {
-  return fmt::format("bench {} (revision {}, {}, {}, kernel {})", ODOBENCH_VERSION, kGitRevision,
-                     ODOBENCH_BUILD_TYPE, compiler(), to_string(kernel_in_force()));
+  return fmt::format(
+      "bench {} (revision {}, {}, {}, kernel {}){}", ODOBENCH_VERSION, kGitRevision, ODOBENCH_BUILD_TYPE,
+      compiler(), to_string(kernel_in_force()),
+      has_chart_library() ? "" : fmt::format("\nHTML reports without charts: {}", why_no_charts()));
 }
 
 }  // namespace odobench

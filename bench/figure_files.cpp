@@ -87,8 +87,10 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
   if (figures(document).empty()) return {};
   if (!has_chart_library())
     throw std::runtime_error(
-        "figures need the chart library, which this program was built without: install npm, configure and "
-        "build again");
+        fmt::format("figures need the chart library, which this program was built without, since {}; install "
+                    "npm, configure "
+                    "and build again",
+                    why_no_charts()));
   const PrivateFolder work;
   for (int k = 0; k < kChartLibraryFiles; ++k) work.write(chart_library(k).name, chart_library(k).text);
   work.write("theme.js", web_file("theme.js"));

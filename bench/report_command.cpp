@@ -84,10 +84,10 @@ ExitCode report_command(const ReportOptions& options) {
   if (!options.out.empty()) {
     write_file(options.out, render_html(document));
     written.emplace_back(options.out);
-    if (!has_chart_library())
-      note("built without the chart library (npm was not there): the page has its tables, but no figures");
-    note(fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
-                     document.sections.size()));
+    note(has_chart_library()
+             ? fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
+                           document.sections.size())
+             : fmt::format("{}: tables without charts, since {}", options.out, why_no_charts()));
   }
   if (!options.figures.empty()) {
     for (fs::path& file : write_figures(document, options.figures)) written.push_back(std::move(file));

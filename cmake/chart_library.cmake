@@ -1,18 +1,24 @@
 # Script: fetches the chart library into OUTPUT as vega.min.js, vega-lite.min.js and licences.txt, with npm, whose lock file
-# holds the check sums. Without npm or network the three files are empty, and a line says so: charts are an extra.
-#   cmake -DNPM=.. -DSOURCE=reports/web -DOUTPUT=.. -P chart_library.cmake
+# holds the check sums. Without npm or network the three files are empty and missing.txt says why: charts are an extra, unless
+# WANTED is ON, where the script fails instead.
+#   cmake -DNPM=.. -DWANTED=AUTO|ON|OFF -DSOURCE=reports/web -DOUTPUT=.. -P chart_library.cmake
 set(files vega.min.js vega-lite.min.js licences.txt)
 
 function(leave_out why)
+  if(WANTED STREQUAL "ON")
+    message(FATAL_ERROR "ODOBENCH_CHARTS=ON, but ${why}")
+  endif()
   foreach(file IN LISTS files)
     file(WRITE "${OUTPUT}/${file}" "")
   endforeach()
-  message("Charts are left out of HTML reports: ${why}")
-  return()
+  file(WRITE "${OUTPUT}/missing.txt" "${why}")
 endfunction()
 
-if(NOT NPM)
-  leave_out("npm is not installed, or ODOBENCH_CHARTS is OFF")
+if(WANTED STREQUAL "OFF")
+  leave_out("it was configured with ODOBENCH_CHARTS=OFF")
+  return()
+elseif(NOT NPM)
+  leave_out("npm was not installed when it was configured")
   return()
 endif()
 set(work "${OUTPUT}/npm")
@@ -23,7 +29,22 @@ execute_process(COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --fetc
 set(vega "${work}/node_modules/vega")
 set(vega_lite "${work}/node_modules/vega-lite")
 if(NOT status EQUAL 0 OR NOT EXISTS "${vega}/build/vega.min.js" OR NOT EXISTS "${vega_lite}/build/vega-lite.min.js")
-  leave_out("npm could not fetch vega and vega-lite (see ${OUTPUT}/npm.err); configuring again tries again")
+  # npm's own first line of complaint that is no code, else how it ended.
+  set(error "")
+  if(EXISTS "${OUTPUT}/npm.err")
+    file(STRINGS "${OUTPUT}/npm.err" lines REGEX "^npm (ERR!|error) [a-z]")
+    list(FILTER lines EXCLUDE REGEX "^npm (ERR!|error) (code|errno|syscall|path) ")
+    if(lines)
+      list(GET lines 0 error)
+      string(REGEX REPLACE "^npm (ERR!|error) " "" error "${error}")
+      string(REGEX REPLACE "https?://[^ ]*" "the registry" error "${error}")
+      string(SUBSTRING "${error}" 0 160 error)
+    endif()
+  endif()
+  if(NOT error)
+    set(error "npm ci ended with ${status}")
+  endif()
+  leave_out("npm could not fetch vega and vega-lite: ${error}")
   return()
 endif()
 
@@ -35,3 +56,4 @@ file(WRITE "${OUTPUT}/licences.txt" "Vega\n\n${vega_licence}\n------------------
 file(COPY_FILE "${vega}/build/vega.min.js" "${OUTPUT}/vega.min.js")
 file(COPY_FILE "${vega_lite}/build/vega-lite.min.js" "${OUTPUT}/vega-lite.min.js")
 file(REMOVE_RECURSE "${work}")
+file(WRITE "${OUTPUT}/missing.txt" "")

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -23,9 +24,30 @@ std::string brief(const json& value) {
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
-std::string broken(const json::parse_error& e, std::string_view text, const std::string& file) {
+// The word NaN, Infinity or -Infinity, which other programs write though JSON has none, whose reading ended at `read`; else "".
+std::string_view not_a_number_at(std::string_view text, std::size_t read) {
+  std::size_t begin = std::min(read, text.size());
+  const auto part = [](char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '+';
+  };
+  while (begin > 0 && part(text[begin - 1])) --begin;
+  std::size_t end = begin;
+  while (end < text.size() && part(text[end])) ++end;
+  const std::string_view word = text.substr(begin, end - begin);
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* known : {"nan", "-nan", "infinity", "-infinity", "inf", "-inf", "+inf", "+infinity"})
+    if (lower == known) return word;
+  return {};
+}
+
+std::string broken(const json::parse_error& e, std::string_view text, const std::string& file,
+                   const std::string& place) {
   const std::size_t read = std::min(e.byte > 0 ? e.byte - 1 : 0, text.size());
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(read), '\n');
+  if (const std::string_view word = not_a_number_at(text, read); !word.empty())
+    return fmt::format("{}:{}: {}: found {}, expected a finite number", file, line, place, word);
   // The library's sentence follows its own "[...] parse error at line L, column C: ".
   std::string what = e.what();
   const auto column = what.find("column ");
@@ -35,22 +57,54 @@ std::string broken(const json::parse_error& e, std::string_view text, const std:
   return fmt::format("{}:{}: broken JSON: {}", file, line, what);
 }
 
-// Called at every token: collects the keys of the objects being read.
-class DuplicateKeys {
+// Called at every token: collects the keys of the objects being read, and knows where the reading is.
+class Reading {
  public:
-  explicit DuplicateKeys(const std::string& file) : file_(file) {}
+  explicit Reading(const std::string& file) : file_(file) {}
   bool operator()(json::parse_event_t event, const json& parsed) {
-    if (event == json::parse_event_t::object_start) open_.emplace_back();
-    if (event == json::parse_event_t::object_end) open_.pop_back();
-    if (event == json::parse_event_t::key && !open_.back().insert(parsed.get<std::string>()).second)
-      throw DataError(
-          fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
+    using Event = json::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) {
+      open_.emplace_back();
+      open_.back().is_array = event == Event::array_start;
+    } else if (event == Event::object_end || event == Event::array_end) {
+      open_.pop_back();
+      next();
+    } else if (event == Event::key) {
+      open_.back().key = parsed.get<std::string>();
+      if (!open_.back().keys.insert(open_.back().key).second)
+        throw DataError(
+            fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
+    } else if (event == Event::value && !open_.empty()) {
+      const bool names = !open_.back().is_array && (open_.back().key == "id" || open_.back().key == "name");
+      if (names && parsed.is_string()) open_.back().id = parsed.get<std::string>();
+      next();
+    }
     return true;
   }
 
+  // "/windows/3 (p003)/ax/5": numbers count from 0, the id or name of an element in brackets.
+  std::string place() const {
+    std::string text;
+    for (std::size_t k = 0; k < open_.size(); ++k) {
+      text += "/" + (open_[k].is_array ? std::to_string(open_[k].index) : open_[k].key);
+      if (k + 1 < open_.size() && !open_[k + 1].id.empty()) text += fmt::format(" ({})", open_[k + 1].id);
+    }
+    return text.empty() ? "/" : text;
+  }
+
  private:
+  struct Level {
+    bool is_array = false;
+    std::size_t index = 0;
+    std::string key, id;
+    std::set<std::string> keys;
+  };
+  void next() {
+    if (!open_.empty() && open_.back().is_array) ++open_.back().index;
+  }
+
   const std::string& file_;
-  std::vector<std::set<std::string>> open_;
+  std::vector<Level> open_;
 };
 
 }  // namespace
@@ -66,12 +120,12 @@ JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value, 
 JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& file) {
   auto document = std::make_shared<Document>();
   document->file = file.string();
+  Reading reading(document->file);
   try {
-    DuplicateKeys keys(document->file);
     document->root = json::parse(
-        text, [&keys](int, json::parse_event_t event, json& parsed) { return keys(event, parsed); });
+        text, [&reading](int, json::parse_event_t event, json& parsed) { return reading(event, parsed); });
   } catch (const json::parse_error& e) {
-    throw DataError(broken(e, text, document->file));
+    throw DataError(broken(e, text, document->file, reading.place()));
   } catch (const json::exception& e) {
     throw DataError(fmt::format("{}: broken JSON: {}", document->file, e.what()));
   }

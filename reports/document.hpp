@@ -56,8 +56,9 @@ std::vector<const Figure*> figures(const Document& document);
 // std::invalid_argument naming figure and data set when the document lacks one.
 nlohmann::json standalone(const Figure& figure, const std::map<std::string, std::string>& datasets);
 
-// One self-contained HTML page, see reports/html_page.cpp. Without the chart library in the binary (see reports/web_assets.hpp)
-// it keeps the tables, and one line says what is missing.
+// One self-contained HTML page, see reports/html_page.cpp. Without `charts` (which a binary without the chart library, see
+// reports/web_assets.hpp, cannot draw) it keeps the tables, and one line says what is missing and why.
 std::string render_html(const Document& document);
+std::string render_html(const Document& document, bool charts);
 
 }  // namespace odobench

@@ -62,17 +62,14 @@ int estimated_height(const json& spec) {
   return own + kAxisRoom + (has_legend(spec) ? kLegendRoom : 0);
 }
 
-std::string render_html_figure(const Figure& figure, int number, bool charts) {
+std::string render_html_figure(const Figure& figure, int number) {
   const std::string id = html_escape(figure.id);
   std::string out = fmt::format("<figure id=\"figure-{}\" data-figure=\"{}\">\n", id, id);
   out +=
       fmt::format("<div class=\"figure-head\"><h3><span class=\"number\">Figure {}.</span> {}</h3></div>\n",
                   number, html_escape(figure.title));
-  if (charts)
-    out +=
-        fmt::format("<div class=\"chart\" style=\"min-height:{}px\"></div>\n", estimated_height(figure.spec));
-  else
-    out += "<p class=\"missing\">Chart left out.</p>\n";
+  out +=
+      fmt::format("<div class=\"chart\" style=\"min-height:{}px\"></div>\n", estimated_height(figure.spec));
   return out + fmt::format("<figcaption>{}</figcaption>\n</figure>\n", html_escape(figure.caption));
 }
 

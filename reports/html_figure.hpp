@@ -9,7 +9,7 @@
 namespace odobench {
 
 // <figure id="figure-ID"> with a place of about the chart's height, so that the page does not jump when it is drawn.
-std::string render_html_figure(const Figure& figure, int number, bool charts);
+std::string render_html_figure(const Figure& figure, int number);
 
 // <script type="application/json" data-figure=ID>: the specification, its data by name. Throws std::invalid_argument naming
 // figure and data set when `datasets` lacks one.

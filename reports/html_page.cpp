@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 #include "reports/document.hpp"
 #include "reports/html_figure.hpp"
@@ -57,21 +58,21 @@ std::string top(const Document& document) {
   return out + "</ol></nav>\n";
 }
 
-std::string block_html(const Block& block, Numbering& numbering, bool charts) {
+std::string block_html(const Block& block, Numbering& numbering) {
   if (const auto* paragraph = std::get_if<Paragraph>(&block))
     return fmt::format("<p class=\"text\">{}</p>\n", html_escape(paragraph->text));
   if (const auto* table = std::get_if<Table>(&block))
     return render_html_table(*table, numbering.anchor("table-" + table->id), ++numbering.tables);
-  return render_html_figure(std::get<Figure>(block), ++numbering.figures, charts);
+  return render_html_figure(std::get<Figure>(block), ++numbering.figures);
 }
 
-std::string section_html(const Section& section, Numbering& numbering, bool charts) {
+std::string section_html(const Section& section, Numbering& numbering) {
   const std::string id = html_escape(section.id);
   std::string out =
       fmt::format("<section id=\"{}\" aria-labelledby=\"{}-title\">\n<h2 id=\"{}-title\">{}</h2>\n", id, id,
                   id, html_escape(section.title));
   if (!section.lead.empty()) out += fmt::format("<p class=\"lead\">{}</p>\n", html_escape(section.lead));
-  for (const Block& block : section.blocks) out += block_html(block, numbering, charts);
+  for (const Block& block : section.blocks) out += block_html(block, numbering);
   return out + "</section>\n";
 }
 
@@ -94,20 +95,42 @@ std::string library() {
   return out;
 }
 
+// What is not there is not announced: no captions, no sections of figures alone.
+Document without_figures(Document document) {
+  std::vector<Section> kept;
+  for (Section& section : document.sections) {
+    std::vector<Block> blocks;
+    for (Block& block : section.blocks)
+      if (!std::holds_alternative<Figure>(block)) blocks.push_back(std::move(block));
+    section.blocks = std::move(blocks);
+    if (!section.blocks.empty()) kept.push_back(std::move(section));
+  }
+  document.sections = std::move(kept);
+  return document;
+}
+
+std::string no_charts_sentence() {
+  return fmt::format("this program was built without the chart library{}{}",
+                     why_no_charts().empty() ? "" : ", since ", why_no_charts());
+}
+
 }  // namespace
 
 std::string render_html(const Document& document) {
+  return render_html(document, has_chart_library());
+}
+
+std::string render_html(const Document& complete, bool with_charts) {
+  const bool missing = !with_charts && !figures(complete).empty();
+  const Document document = missing ? without_figures(complete) : complete;
   const std::vector<const Figure*> all = figures(document);
-  const bool charts = !all.empty() && has_chart_library();
+  const bool charts = !all.empty();
   std::string out = head(document, charts) + top(document) + "<main id=\"content\">\n";
-  if (!all.empty() && !charts)
-    out += fmt::format(
-        "<p class=\"missing\">The {} charts are missing: this program was built without the chart library, "
-        "which the build "
-        "fetches with npm. The tables are complete.</p>\n",
-        all.size());
+  if (missing)
+    out += fmt::format("<p class=\"missing\">This page has no charts: {}. Its tables are complete.</p>\n",
+                       html_escape(no_charts_sentence()));
   Numbering numbering;
-  for (const Section& section : document.sections) out += section_html(section, numbering, charts);
+  for (const Section& section : document.sections) out += section_html(section, numbering);
   out += "</main>\n</div>\n" + footer(charts);
   if (charts) {
     for (const Figure* figure : all) out += render_html_specification(*figure, document.datasets);

@@ -18,6 +18,7 @@ ODOBENCH_EMBED(odobench_page_js, ODOBENCH_WEB "page.js");
 ODOBENCH_EMBED(odobench_render_svg_js, ODOBENCH_WEB "render_svg.js");
 ODOBENCH_EMBED(odobench_vega_js, ODOBENCH_CHART_FOLDER "vega.min.js");
 ODOBENCH_EMBED(odobench_vega_lite_js, ODOBENCH_CHART_FOLDER "vega-lite.min.js");
+ODOBENCH_EMBED(odobench_missing, ODOBENCH_CHART_FOLDER "missing.txt");
 ODOBENCH_EMBED(odobench_licences, ODOBENCH_CHART_FOLDER "licences.txt");
 
 namespace odobench {
@@ -47,6 +48,10 @@ WebFile chart_library(int index) {
 
 bool has_chart_library() {
   return !chart_library(0).text.empty() && !chart_library(1).text.empty();
+}
+
+std::string_view why_no_charts() {
+  return between(odobench_missing_begin, odobench_missing_end);
 }
 
 std::string_view chart_licences() {

@@ -18,6 +18,8 @@ std::string_view web_file(std::string_view name);
 inline constexpr int kChartLibraryFiles = 2;
 WebFile chart_library(int index);  // vega.min.js, vega-lite.min.js
 bool has_chart_library();
+// Why it was built without: "npm was not installed when it was configured"; "" when it has the library.
+std::string_view why_no_charts();
 
 // The licences of the chart library and of what is inside it; "" when built without.
 std::string_view chart_licences();

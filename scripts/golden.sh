@@ -20,8 +20,9 @@ case ${1:-} in
 esac
 
 status=0
-check() {  # check NAME SET.JSON
-  echo "golden: $1"
+check() {  # check NAME SET.JSON [KERNEL]
+  echo "golden: $1${3:+, kernel $3}"
+  export ODOBENCH_KERNEL=${3:-auto}
   # Methods that converge by themselves, and population methods polished: both end in the optimum, whatever the
   # processor's rounding. What a swarm reaches unpolished depends on the last bit; the tests look at that over seeds.
   "$bench" --quiet --data="$2" --solver=lm,ceres,ip,nlopt:slsqp,nlopt:lbfgs,nlopt:bobyqa \
@@ -32,10 +33,13 @@ check() {  # check NAME SET.JSON
 }
 
 check demo "$root/datasets/demo/set.json"
+# Every processor has this kernel: what it gives must lie within the same tolerances.
+((${#update[@]})) || check demo "$root/datasets/demo/set.json" baseline
 if [[ -d $raw ]]; then
   mkdir -p "$work/vitko2024"
   "$bench" import vitko2024 --quiet --overwrite --from="$raw" --out="$work/vitko2024/set.json"
   check vitko2024 "$work/vitko2024/set.json"
+  ((${#update[@]})) || check vitko2024 "$work/vitko2024/set.json" baseline
 else
   echo "golden: vitko2024 skipped: no $raw"
 fi

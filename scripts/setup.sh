@@ -106,6 +106,10 @@ build() {
   ((${#targets[@]})) && options=(--target "${targets[@]}")
   (cd "$root" && cmake --build --preset "$preset" "${options[@]}" 2>&1) | show_progress ||
     fail "the build of preset '$preset' failed"
+  # A build of everything says so itself.
+  if ((${#targets[@]})) && [[ -s $build/charts/missing.txt ]]; then
+    say "HTML reports will have no charts: $(<"$build/charts/missing.txt")"
+  fi
 }
 
 [[ $preset =~ ^[a-z]+$ ]] && grep --quiet "\"configurePreset\": \"$preset\"" "$root/CMakePresets.json" ||

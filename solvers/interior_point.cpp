@@ -19,6 +19,11 @@ std::mutex& ipopt_mutex() {
   return mutex;
 }
 
+// A sum of squares cannot fall below zero.
+bool exact_fit(const Run& run) {
+  return run.best_cost() == 0 && run.problem().has_normal_equations();
+}
+
 // Leaves Ipopt's code for the duration of a call-back. Declared before anything whose destruction could throw.
 class Outside {
  public:
@@ -111,7 +116,7 @@ class BoxProgram final : public Ipopt::TNLP {
       if (iteration > 0) run_.iteration();
       return 0.0;
     });
-    return !error_ && !run_.stop();
+    return !error_ && !run_.stop() && !exact_fit(run_);
   }
 
   // Half the gradient, by normal equations or by a gradient; kept for the next request at the same point.
@@ -318,6 +323,7 @@ Outcome InteriorPoint::minimise(Run& run) const {
     const double before = run.best_cost();
     const Outcome ended = start_once(run, options_, iterations, start > 0);
     if (run.stop()) return {};
+    if (exact_fit(run)) return {Termination::Settled, "cost 0: an exact fit"};
     // What Ipopt has reached once stays reached when a further start breaks down.
     if (start == 0 || ended.termination != Termination::Failed) outcome = ended;
     if (ended.termination == Termination::Failed || before == 0) return outcome;

@@ -98,7 +98,7 @@ double LocalModel::decrease(const Vector& d) const {
 }
 
 double LocalModel::rounding_part(const Run& run, const Vector& u) const {
-  return rounding_part_of_cost(run.problem(), run.box(), u, length_, cost_);
+  return resolution_part_of_cost(run.box(), u, length_);
 }
 
 }  // namespace odobench

@@ -4,11 +4,14 @@
 
 namespace odobench {
 
+double resolution_part_of_cost(const Box& box, const Vector& u, const Vector& length) {
+  return 4.0 * length.cwiseProduct(box.resolution(u)).squaredNorm();
+}
+
 double rounding_part_of_cost(const Problem& problem, const Box& box, const Vector& u, const Vector& length,
                              double cost) {
   const double stated = problem.rounding_floor(box.to_parameters(u)) / cost;
-  const double moved = 4.0 * length.cwiseProduct(box.resolution(u)).squaredNorm();
-  return std::max(moved, std::isfinite(stated) ? stated : 0.0);
+  return std::max(resolution_part_of_cost(box, u, length), std::isfinite(stated) ? stated : 0.0);
 }
 
 }  // namespace odobench

@@ -6,9 +6,11 @@
 
 namespace odobench {
 
-// The larger of two parts of the cost J(u) = r'r: what the problem itself states (Problem::rounding_floor), and the
-// square of what the residuals change by when every parameter moves by two units in its last place. `length`: |J_i| / |r|
-// in unit coordinates.
+// As a part of the cost J(u) = r'r: the square of what the residuals change by when every parameter moves by two units in its last
+// place. `length`: |J_i| / |r| in unit coordinates.
+double resolution_part_of_cost(const Box& box, const Vector& u, const Vector& length);
+
+// The larger of that and what the problem itself states (Problem::rounding_floor).
 double rounding_part_of_cost(const Problem& problem, const Box& box, const Vector& u, const Vector& length,
                              double cost);
 

@@ -111,6 +111,49 @@ TEST(Calibration, BatchHasTheBitsOfSingleEvaluations) {
     EXPECT_EQ(costs[k], problem.cost(candidates.col(k))) << k;
 }
 
+// Data without noise: what rounding leaves of the structured cost is below its stated floor and never negative, and a solver that
+// gets there has converged.
+TEST(Calibration, ExactDataEndAtTheRoundingFloor) {
+  std::vector<Recording> recordings = some_recordings();
+  const Vector truth = perturbed(4);
+  for (Recording& r : recordings) {
+    const PoseTrack q = direct::integrate(r, truth);
+    r.x = q.x;
+    r.y = q.y;
+    r.theta = q.theta;
+  }
+  for (const InstructionSet k : available_instruction_sets()) {
+    const CalibrationProblem model(nominal_robot(), recordings, k);
+    const double floor = model.rounding_floor(truth);
+    EXPECT_LT(floor, 1e-9);
+    for (int scatter = 0; scatter < 20; ++scatter) {
+      Vector x = truth;
+      x[scatter % 12] *= 1 + 1e-12 * scatter;
+      NormalEquations e;
+      model.normal_equations(x, e);
+      Vector batch(1);
+      model.batch_cost(x, batch);
+      const double exact = direct::cost(recordings, x);
+      for (const double cost : {model.cost(x), e.cost, batch[0]}) {
+        EXPECT_GE(cost, 0);
+        EXPECT_LE(std::abs(cost - exact), floor) << to_string(k);
+      }
+    }
+    const Problem problem(std::make_shared<const CalibrationProblem>(nominal_robot(), recordings, k));
+    for (const char* solver : {"lm", "ceres", "ip", "nlopt:slsqp"}) {
+      SolveOptions options;
+      options.budget.max_evaluations = 1000;
+      const Result r = solve(problem, {solver, {}}, problem.start(), options);
+      EXPECT_EQ(r.termination, Termination::Converged) << to_string(k) << " " << r.brief();
+      EXPECT_LE(r.cost, 10 * floor) << r.brief();
+      EXPECT_GE(r.cost, 0) << r.brief();
+      if (std::string(solver) == "lm") {
+        EXPECT_LE(r.counts.total(), 200) << r.brief();
+      }
+    }
+  }
+}
+
 TEST(Calibration, NotANumberComesOutAsNotANumber) {
   const CalibrationProblem problem(nominal_robot(), some_recordings());
   Vector z = perturbed(0);

@@ -306,7 +306,8 @@ TEST(EntropyWindowFile, Refuses) {
   EXPECT_TRUE(says(error("\"dt\":0.1", "\"dt\":-0.1"), {"/windows/0/params/dt: found -0.1"}));
   EXPECT_TRUE(
       says(error("\"dt\":0.1", "\"dt\":null"), {"/windows/0/params/dt: found null, expected a number"}));
-  EXPECT_TRUE(says(error("\"dt\":0.1", "\"dt\":NaN"), {"w.json:2: broken JSON"}));
+  EXPECT_TRUE(
+      says(error("\"dt\":0.1", "\"dt\":NaN"), {"w.json:2: ", "/dt: found NaN, expected a finite number"}));
   EXPECT_TRUE(says(error("\"step_a\":0.1,", ""), {"/windows/0/params: found no key \"step_a\""}));
   EXPECT_TRUE(says(error("\"N\":3", "\"N\":2"), {"/windows/0/N: found 2, expected 3 .."}));
   EXPECT_TRUE(says(error("\"N\":3", "\"N\":4"), {"/windows/0/ax: found 3 numbers, expected 4"}));

@@ -144,16 +144,23 @@ TEST(HtmlPage, FetchesNothing) {
   EXPECT_THAT(render_html(tables_only()), Not(HasSubstr("unsafe-eval")));
 }
 
+// What is not there is said once, with the reason, and not counted.
 TEST(HtmlPage, FiguresAreDrawnOrSaidToBeMissing) {
   const Document document = testing::sample_document();
-  const std::string html = render_html(document);
-  EXPECT_EQ(count(html, "<figure "), figures(document).size());
-  EXPECT_EQ(count(html, "<table "), 3u);
-  EXPECT_EQ(count(html, "<script type=\"application/json\" data-dataset=\""),
-            has_chart_library() ? document.datasets.size() : 0u);
-  EXPECT_EQ(html.find("charts are missing") != std::string::npos, !has_chart_library());
-  EXPECT_EQ(html.find("Redistribution and use in source and binary forms") != std::string::npos,
-            has_chart_library());
+  for (const bool charts : {true, false}) {
+    const std::string html = render_html(document, charts);
+    EXPECT_EQ(count(html, "<figure "), charts ? figures(document).size() : 0u);
+    EXPECT_EQ(count(html, "<table "), 3u);
+    EXPECT_EQ(count(html, "<script type=\"application/json\" data-dataset=\""),
+              charts ? document.datasets.size() : 0u);
+    EXPECT_EQ(count(html, "This page has no charts: this program was built without the chart library"),
+              charts ? 0u : 1u);
+    for (const Figure* figure : figures(document))
+      EXPECT_EQ(html.find("figure-" + figure->id) != std::string::npos, charts) << figure->id;
+    EXPECT_EQ(html.find("Redistribution and use in source and binary forms") != std::string::npos,
+              charts && has_chart_library());
+  }
+  EXPECT_EQ(why_no_charts().empty(), has_chart_library());
 }
 
 TEST(HtmlPage, AFigureWithoutItsDataIsRefused) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "problems/calibration/structure.hpp"
@@ -54,6 +56,10 @@ CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
                                        std::vector<Recording> recordings, InstructionSet kernel)
     : parameters_(std::move(parameters)), recordings_(std::move(recordings)), kernel_(kernel) {
   check(parameters_, recordings_);
+  for (const Recording& r : recordings_)
+    for (std::size_t k = 0; k < r.size(); ++k)
+      rounding_floor_ += r.x[k] * r.x[k] + r.y[k] * r.y[k] + r.theta[k] * r.theta[k];
+  rounding_floor_ *= 0.25 * std::numeric_limits<double>::epsilon();
   structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
 }
 
@@ -62,15 +68,17 @@ CalibrationProblem::CalibrationProblem(CalibrationProblem&&) noexcept = default;
 CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept = default;
 
 double CalibrationProblem::cost(const ConstVectorRef& z) const {
-  return structure_->cost(z);
+  return std::max(structure_->cost(z), 0.0);  // not-a-number stays
 }
 
 void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
   structure_->batch_cost(candidates, costs);
+  for (double& cost : costs) cost = std::max(cost, 0.0);
 }
 
 void CalibrationProblem::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
   structure_->normal_equations(z, out);
+  out.cost = std::max(out.cost, 0.0);
 }
 
 Eigen::Index CalibrationProblem::residual_count() const {
