@@ -14,6 +14,7 @@
 
 #include "bench/context.hpp"
 #include "bench/identifiability.hpp"
+#include "datasets/file_io.hpp"
 #include "problems/classic/classic_problems.hpp"
 
 namespace odobench {
@@ -181,6 +182,7 @@ RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite) : pa
   if (error)
     throw std::invalid_argument(
         fmt::format("--out={}: cannot make this folder: {}", folder.string(), error.message()));
+  require_replaceable(path_);
   file_ =
       ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
   if (file_ >= 0) return;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <stdexcept>
 #include <system_error>
 
 namespace odobench {
@@ -56,6 +57,22 @@ int open_temporary(const fs::path& target, fs::path& temporary) {
 }
 
 }  // namespace
+
+void require_replaceable(const fs::path& target) {
+  std::error_code e;
+  const fs::file_status status = fs::symlink_status(target, e);
+  if (!fs::exists(status) || fs::is_regular_file(status)) return;
+  if (fs::is_directory(status))
+    fail(target, "cannot be written", std::make_error_code(std::errc::is_a_directory));
+  const char* what = fs::is_symlink(status)          ? "a link"
+                     : fs::is_fifo(status)           ? "a pipe"
+                     : fs::is_socket(status)         ? "a socket"
+                     : fs::is_character_file(status) ? "a device"
+                     : fs::is_block_file(status)     ? "a block device"
+                                                     : "something else";
+  throw std::invalid_argument(
+      fmt::format("{}: found {}, expected a regular file or a new name to write to", target.string(), what));
+}
 
 std::string read_file(const fs::path& file) {
   const Descriptor d(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
@@ -112,6 +129,7 @@ void FileTransaction::create_parents(const fs::path& folder) {
 }
 
 void FileTransaction::add(const fs::path& file, std::string_view bytes) {
+  require_replaceable(file);
   create_parents(file.parent_path());
   Entry entry;
   entry.target = file;
@@ -138,10 +156,8 @@ std::vector<fs::path> FileTransaction::targets() const {
 void FileTransaction::commit() {
   std::error_code e;
   for (Entry& entry : entries_) {
-    const fs::file_status status = fs::status(entry.target, e);
-    if (fs::is_directory(status))
-      fail(entry.target, "cannot be written", std::make_error_code(std::errc::is_a_directory));
-    entry.replaces = fs::exists(status);
+    require_replaceable(entry.target);
+    entry.replaces = fs::exists(entry.target, e);
   }
   for (Entry& entry : entries_) {
     fs::rename(entry.temporary, entry.target, e);

@@ -18,6 +18,10 @@ std::string read_file(const std::filesystem::path& file);
 void read_pieces(const std::filesystem::path& file, std::size_t piece,
                  const std::function<void(std::string_view)>& take);
 
+// Throws std::invalid_argument unless `target` is a regular file or does not exist: a rename over a device, a pipe or a link would
+// destroy what is none of ours. A folder throws DataError.
+void require_replaceable(const std::filesystem::path& target);
+
 // Writes one file so that a reader sees the old content or the new, never a part (FileTransaction with one
 // file).
 void write_file(const std::filesystem::path& file, std::string_view bytes);
@@ -27,6 +31,8 @@ void write_file(const std::filesystem::path& file, std::string_view bytes);
 // Whatever was not committed is removed by the destructor, folders it created included; when a rename fails,
 // the files renamed before it are removed too, unless they replaced older ones. A crash of the machine may
 // still lose data: nothing is synced.
+//
+// Targets must be what require_replaceable lets pass.
 class FileTransaction {
  public:
   FileTransaction() = default;

@@ -2,6 +2,9 @@
 #include "datasets/file_io.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
 
 #include "datasets/sha256.hpp"
 #include "tests/support/data_error.hpp"
@@ -75,6 +78,29 @@ TEST(DataErrorMatchers, CanFail) {
   EXPECT_FALSE(says("two\nlines", {}));
   EXPECT_FALSE(says("one line", {"two"}));
   EXPECT_TRUE(says("one line", {"one", "line"}));
+}
+
+// A rename over a device, a pipe or a link would destroy what is none of ours.
+TEST(FileIo, OnlyRegularFilesAreReplaced) {
+  const testing::TemporaryFolder folder;
+  const std::string pipe = (folder / "pipe").string(), link = (folder / "link").string();
+  const std::string behind = folder.file("behind", "kept");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink(behind, link);
+  std::filesystem::create_symlink(folder / "nowhere", folder / "dangling");
+  for (const std::string& target : {pipe, link, (folder / "dangling").string()}) {
+    try {
+      write_file(target, "new");
+      FAIL() << target << " was written";
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("expected a regular file or a new name"), std::string::npos)
+          << e.what();
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read_file(behind), "kept");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 4);
 }
 
 }  // namespace
