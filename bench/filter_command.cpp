@@ -246,6 +246,8 @@ ExitCode filter_command(const FilterOptions& options) {
   record.termination = interrupted ? to_string(Termination::Interrupted) : "complete";
   record.message = interrupted ? "interrupted, the windows so far" : "all windows of the run";
   record.notes = {setup_note(options, setup)};
+  if (rows.data().unfinished())
+    record.notes.push_back("the last line of the file has no line break; it was taken");
   record.context = run_context(1, kernel);
   record.time_utc = begin_utc;
 
@@ -257,6 +259,9 @@ ExitCode filter_command(const FilterOptions& options) {
     save_tables(tables, options.records);
   }
   print_tables(tables, format);
+  if (rows.data().unfinished() && !options.quiet)
+    note(fmt::format("{}: the last line has no line break; it was taken, since it has all its fields",
+                     options.data));
   if (interrupted) note(fmt::format("interrupted after {} windows", run.windows()));
   return interrupted ? ExitCode::Interrupted : ExitCode::Success;
 }

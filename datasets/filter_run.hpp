@@ -62,6 +62,8 @@ class FilterRunReader {
     return passed_over_;
   }  // rows before the first one delivered: 1 for headings
   bool interrupted() const { return stream_.interrupted(); }
+  // The last line read had all its fields but no line break: its last number may have been cut.
+  bool unfinished() const { return stream_.unfinished(); }
   const std::string& file() const { return stream_.file(); }
 
  private:

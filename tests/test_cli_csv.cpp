@@ -38,5 +38,17 @@ TEST(CliCsv, EveryDialectGivesTheSameNumbers) {
   EXPECT_EQ(filtered("# a robot's log\n" + plain.substr(0, plain.size() - 1)), wanted);
 }
 
+// It may have been cut, so it is said.
+TEST(CliCsv, ALastLineWithoutABreakIsSaid) {
+  const TemporaryFolder folder;
+  const std::string plain = plain_run(40);
+  const ProcessResult whole = run_bench({"filter", "--data=" + folder.file("whole.csv", plain)});
+  const ProcessResult cut =
+      run_bench({"filter", "--data=" + folder.file("cut.csv", plain.substr(0, plain.size() - 1))});
+  EXPECT_EQ(cut.exit_code, 0) << cut.err;
+  EXPECT_THAT(cut.err, ::testing::HasSubstr("the last line has no line break"));
+  EXPECT_THAT(whole.err, ::testing::Not(::testing::HasSubstr("line break")));
+}
+
 }  // namespace
 }  // namespace odobench
