@@ -66,8 +66,9 @@ void mark_column(Table& table, std::size_t column) {
     const auto& none = table.references;
     Cell& cell = table.rows[i][column];
     if (!cell.value || std::find(none.begin(), none.end(), i) != none.end()) continue;
-    if (reference)
-      cell.worse = !std::isfinite(*cell.value) || sign * (*cell.value - *reference) > noise_of(cell);
+    // An unknown noise is one of the method; that this result is worse is a fact.
+    const double noise = std::isinf(noise_of(cell)) ? rounding_of(cell) : noise_of(cell);
+    if (reference) cell.worse = !std::isfinite(*cell.value) || sign * (*cell.value - *reference) > noise;
     if (std::isfinite(*cell.value)) competing.push_back(&cell);
   }
   if (competing.size() < 2) return;

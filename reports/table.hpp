@@ -71,7 +71,7 @@ inline constexpr double kRepeats = 1e-9;
 //   Cell::best   the lowest (highest) finite number and those that tie with it, if it is better than the reference row (where there is
 //                exactly one) and than all others by more than its own noise. What ties: reads the same, or differs by at most that
 //                noise; of numbers that differ by rounding only, the least noisy one speaks. Where all tie, nothing is best.
-//   Cell::worse  worse than the reference row by more than its noise, or not finite though that is.
+//   Cell::worse  worse than the reference row by more than its noise (rounding where that is unknown), or not finite though that is.
 // render() does so itself for the formats that people read.
 void mark_best(Table& table);
 // "!: worse than nominal." where a cell is, else "".

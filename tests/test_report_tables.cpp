@@ -404,6 +404,9 @@ TEST(Best, WhatIsWorseThanNominalIsMarkedEverywhere) {
   EXPECT_THAT(render({ranked_with_noise({1, 1.5, 0.9, 2}, {0, 1, 0, 2})}, Format::Console),
               Not(HasSubstr("!")));
   EXPECT_THAT(render({ranking(Better::Higher, {1, 1.5, 0.9, 2})}, Format::Console), HasSubstr("c    0.90 !"));
+  EXPECT_THAT(render({ranked_with_noise({1, 1.5, 0.9, 2}, {0, kInf, 0, 0})}, Format::Console),
+              HasSubstr("b    1.50 !"))
+      << "a single run of something random: its result is worse all the same";
 }
 
 TEST(Best, EveryFormatForPeopleShowsIt) {
