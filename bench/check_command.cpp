@@ -57,7 +57,8 @@ ExitCode check_command(const CheckOptions& options) {
   }
   const BaselineReport report = check_baseline(read_baseline(options.baseline), records);
   print_tables({report.table}, format);
-  if (report.compared == 0) warn(fmt::format("nothing to compare: {} has no entry", options.baseline));
+  if (report.compared == 0)
+    warn(fmt::format("nothing to compare: no entry of {} meets a record", options.baseline));
   return report.passed ? ExitCode::Success : ExitCode::CheckFailed;
 }
 

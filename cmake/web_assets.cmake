@@ -18,7 +18,7 @@ set(web "${CMAKE_SOURCE_DIR}/reports/web")
 set(charts "${CMAKE_BINARY_DIR}/charts")
 set(ODOBENCH_CHART_FILES "${charts}/vega.min.js" "${charts}/vega-lite.min.js" "${charts}/licences.txt" "${charts}/missing.txt")
 # What an earlier build went without is tried again.
-if(EXISTS "${charts}/missing.txt")
+if(NPM AND EXISTS "${charts}/missing.txt")
   file(SIZE "${charts}/missing.txt" size)
   if(size GREATER 0)
     file(REMOVE ${ODOBENCH_CHART_FILES})

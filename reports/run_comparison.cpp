@@ -289,7 +289,7 @@ std::vector<std::string> without_partner(const RunComparison& comparison,
   for (const RunRecord& old : before) {
     const auto seen = boxes.find({old.problem, old.dataset, old.label});
     if (!old.cost || seen == boxes.end() || seen->second.empty() || there(seen->second, old)) continue;
-    if (other.insert(name(old)).second) list.push_back(name(old) + " (another dimension or box)");
+    if (other.insert(name(old)).second) list.push_back(fmt::format("{} ({})", name(old), kOtherBox));
   }
   return list;
 }

@@ -169,7 +169,6 @@ std::vector<DerivativeComparison> compare_derivatives(const Problem& problem, co
     residuals.resize(problem.residual_count());
     jacobian.resize(problem.residual_count(), n);
     problem.residuals_and_jacobian(x, residuals, jacobian);
-    problem.residuals(x, residuals);
   }
   NormalEquations own;
   const bool gram = problem.has_residuals() && !problem.forms_normal_equations();

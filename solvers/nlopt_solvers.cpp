@@ -82,7 +82,8 @@ class Objective {
       if (!error_ && !run_.stop()) {
         ++evaluations_;
         const Eigen::Map<const Vector> at(x, m);
-        const Vector u = algorithm_.folded ? Vector(BoundaryMap(kFold).to_box(at)) : Vector(at);
+        const Vector folded = algorithm_.folded ? Vector(BoundaryMap(kFold).to_box(at)) : Vector();
+        const ConstVectorRef u = algorithm_.folded ? ConstVectorRef(folded) : ConstVectorRef(at);
         if (gradient != nullptr) {
           g.resize(m);
           cost = run_.cost_and_gradient(u, g);

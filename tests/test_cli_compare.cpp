@@ -137,7 +137,9 @@ TEST_F(CliCompare, ACheckOfNothingFails) {
   EXPECT_EQ(
       run_bench({"check", "--update", "--baseline=" + baseline, file("b.jsonl", repeats("lm", 1))}).exit_code,
       0);
-  EXPECT_EQ(run_bench({"check", "--baseline=" + baseline, runs}).exit_code, 1);
+  const ProcessResult none = run_bench({"check", "--baseline=" + baseline, runs});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("nothing to compare: no entry of "));
 }
 
 TEST_F(CliCompare, RegressionFailsOnlyBeyondAStatedLimit) {

@@ -127,12 +127,13 @@ std::vector<std::string> solver_names() {
   for (const SolverEntry& entry : solver_registry()) names.push_back(entry.name);
   return names;
 }
-INSTANTIATE_TEST_SUITE_P(Every, Verdict, ::testing::ValuesIn(solver_names()), [](const auto& tested) {
+std::string name_of_test(const ::testing::TestParamInfo<std::string>& tested) {
   std::string name = tested.param;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ':' || c == '-'; }, '_');
   return name;
-});
+}
+INSTANTIATE_TEST_SUITE_P(Every, Verdict, ::testing::ValuesIn(solver_names()), name_of_test);
 
 TEST(VerdictOf, LmWithAFlippedJacobianStalls) {
   TwoResiduals flipped = rosenbrock(1);
@@ -269,13 +270,7 @@ TEST_P(CertifiedVerdict, ConvergedIsNeverSaidFalsely) {
     EXPECT_GT(seconded, 100);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Every, CertifiedVerdict, ::testing::ValuesIn(solver_names()),
-                         [](const auto& tested) {
-                           std::string name = tested.param;
-                           std::replace_if(
-                               name.begin(), name.end(), [](char c) { return c == ':' || c == '-'; }, '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Every, CertifiedVerdict, ::testing::ValuesIn(solver_names()), name_of_test);
 
 TEST(CertifiedProblems, LmAndCeresSolveMoreGarbowHillstrom) {
   for (const char* solver : {"lm", "ceres"}) {
