@@ -14,6 +14,13 @@
 namespace odobench {
 namespace {
 
+// A sanitizer's own handlers say more than ours.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 constexpr const char* kReport =
     "please report it with this line, the command line, what 'bench --version' prints and, if you can, the "
     "input";
@@ -87,7 +94,7 @@ Ending ending_of(const std::exception_ptr& error) {
 }
 
 void announce_crashes() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (kSanitized) return;
   std::set_terminate(terminated);
   static std::array<char, 1 << 16> stack;  // a handler of a stack overflow needs one of its own
   stack_t own{};
@@ -101,7 +108,6 @@ void announce_crashes() {
     ::sigemptyset(&action.sa_mask);
     ::sigaction(crash.signal, &action, nullptr);
   }
-#endif
 }
 
 }  // namespace odobench
