@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
-#include "datasets/error.hpp"
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
 #include "reports/baseline.hpp"
 
 namespace odobench {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "bench/exit_code.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/progress.hpp"

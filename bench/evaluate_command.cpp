@@ -9,14 +9,14 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/error.hpp"
+#include "base/files.hpp"
 #include "bench/context.hpp"
 #include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
 #include "bench/tracks.hpp"
-#include "datasets/error.hpp"
-#include "datasets/file_io.hpp"
 #include "reports/calibration_tables.hpp"
 #include "solvers/options.hpp"
 

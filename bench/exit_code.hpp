@@ -1,8 +1,6 @@
 // How the process ends. docs/cli.md states the same list for users.
 #pragma once
 
-#include <stdexcept>
-
 namespace odobench {
 
 enum class ExitCode : int {
@@ -12,12 +10,6 @@ enum class ExitCode : int {
   Data = 3,   // a data set, record or parameter file is wrong (DataError, std::runtime_error)
   Internal = 70,     // something that nobody foresaw: a fault of the program (EX_SOFTWARE)
   Interrupted = 130  // SIGINT or SIGTERM; what was complete is kept
-};
-
-// Thrown to leave work that has no partial result worth keeping.
-class Interruption : public std::runtime_error {
- public:
-  Interruption() : std::runtime_error("interrupted") {}
 };
 
 }  // namespace odobench

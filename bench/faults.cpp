@@ -11,6 +11,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/stop.hpp"
+
 namespace odobench {
 namespace {
 

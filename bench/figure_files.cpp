@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 #include "reports/web_assets.hpp"
 
 extern char** environ;  // NOLINT: POSIX has no header for it

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/sha256.hpp"
+#include "base/stop.hpp"
 #include "bench/context.hpp"
 #include "bench/filter_output.hpp"
 #include "bench/filter_search.hpp"
@@ -18,7 +20,6 @@
 #include "bench/progress.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
-#include "datasets/sha256.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/ternary_search.hpp"
 

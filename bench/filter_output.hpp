@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 #include "problems/entropy/sliding_filter.hpp"
 
 namespace odobench {

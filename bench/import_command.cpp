@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/stop.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 
 namespace odobench {
 namespace {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
-#include "datasets/simulate/parallel.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/drive_planning.hpp"
 #include "solvers/options.hpp"
@@ -96,7 +96,7 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
   std::vector<DriveInformation> list(selection.drives.size());
   const std::int64_t each = s.exact ? 1 : o.replicas;
   CountLine progress(true, "simulated drives", static_cast<std::int64_t>(list.size()) * each);
-  simulate::parallel_for(list.size(), o.threads, [&](std::size_t i) {
+  parallel_for(list.size(), o.threads, [&](std::size_t i) {
     const simulate::Drive& drive = selection.drives[i];
     if (s.exact) {
       list[i] = ideal_information(drive.name, parameters, simulate::exact_recording(s, drive), truth,

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "bench/locations.hpp"
 #include "bench/option_values.hpp"
-#include "datasets/error.hpp"
-#include "datasets/sha256.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "solvers/options.hpp"
 

@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "base/files.hpp"
 #include "bench/context.hpp"
 #include "bench/identifiability.hpp"
-#include "datasets/file_io.hpp"
 #include "problems/classic/classic_problems.hpp"
 
 namespace odobench {

@@ -9,14 +9,14 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/error.hpp"
+#include "base/files.hpp"
 #include "bench/check_command.hpp"
 #include "bench/figure_files.hpp"
 #include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
-#include "datasets/error.hpp"
-#include "datasets/file_io.hpp"
 #include "reports/report_document.hpp"
 #include "reports/vega.hpp"
 #include "reports/web_assets.hpp"

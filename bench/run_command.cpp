@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
 #include "bench/derivative_table.hpp"
@@ -18,7 +19,6 @@
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
 #include "bench/table_output.hpp"
-#include "datasets/file_io.hpp"
 #include "reports/calibration_tables.hpp"
 
 namespace odobench {

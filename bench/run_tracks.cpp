@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 #include "reports/comparison.hpp"
 
 namespace odobench {

@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <stdexcept>
 
-#include "datasets/json_node.hpp"
+#include "base/json_node.hpp"
 #include "solvers/random.hpp"
 
 namespace odobench {

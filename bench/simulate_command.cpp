@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/files.hpp"
+#include "base/parallel.hpp"
+#include "base/sha256.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
-#include "datasets/simulate/parallel.hpp"
 #include "datasets/simulate/raw_csv.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "solvers/random.hpp"
@@ -48,7 +48,7 @@ void add_raw_files(const simulate::SimulatedSet& set, int threads, const fs::pat
     std::string capture, wheels, sums;
   };
   std::vector<Pair> pairs(set.drives.size());
-  simulate::parallel_for(pairs.size(), threads, [&](std::size_t i) {
+  parallel_for(pairs.size(), threads, [&](std::size_t i) {
     const int number = static_cast<int>(i) + 1;
     Pair& p = pairs[i];
     p.capture = simulate::capture_csv(set.drives[i].logs, number);

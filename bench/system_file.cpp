@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "datasets/json_node.hpp"
+#include "base/json_node.hpp"
 
 namespace odobench {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "bench/progress.hpp"
-#include "datasets/file_io.hpp"
 
 namespace odobench {
 namespace {

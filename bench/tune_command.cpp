@@ -9,13 +9,14 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/files.hpp"
+#include "base/stop.hpp"
 #include "bench/cells.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/fuse_command.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/table_output.hpp"
-#include "datasets/file_io.hpp"
 #include "problems/fusion/tuning_problem.hpp"
 #include "solvers/solve.hpp"
 

@@ -9,13 +9,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
-#include "datasets/simulate/parallel.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "reports/statistics.hpp"
 #include "solvers/random.hpp"

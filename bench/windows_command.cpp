@@ -11,6 +11,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/sha256.hpp"
+#include "base/stop.hpp"
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
 #include "bench/interrupt.hpp"
@@ -19,7 +21,6 @@
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "datasets/entropy_window_file.hpp"
-#include "datasets/sha256.hpp"
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/window_problem.hpp"
 #include "reports/window_tables.hpp"

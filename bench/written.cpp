@@ -1,7 +1,7 @@
 #include "bench/written.hpp"
 
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 
 namespace odobench {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
 #include "datasets/csv_dialect.hpp"
-#include "datasets/error.hpp"
 
 namespace odobench {
 

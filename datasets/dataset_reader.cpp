@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/files.hpp"
+#include "base/json_node.hpp"
+#include "base/sha256.hpp"
 #include "datasets/columns.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/dataset_format.hpp"
-#include "datasets/file_io.hpp"
-#include "datasets/json_node.hpp"
 #include "datasets/recording_file.hpp"
-#include "datasets/sha256.hpp"
 #include "datasets/validate.hpp"
 
 namespace odobench {

@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "datasets/columns.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/dataset_format.hpp"
-#include "datasets/file_io.hpp"
 #include "datasets/recording_file.hpp"
-#include "datasets/sha256.hpp"
 #include "datasets/validate.hpp"
 
 namespace odobench {

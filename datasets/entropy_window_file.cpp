@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "datasets/json_node.hpp"
+#include "base/json_node.hpp"
 
 namespace odobench {
 namespace {

@@ -6,9 +6,9 @@
 #include <bit>
 #include <cstring>
 
+#include "base/json_node.hpp"
+#include "base/sha256.hpp"
 #include "datasets/columns.hpp"
-#include "datasets/json_node.hpp"
-#include "datasets/sha256.hpp"
 
 namespace odobench {
 namespace {

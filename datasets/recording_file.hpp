@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 #include "datasets/recording.hpp"
 
 namespace odobench {

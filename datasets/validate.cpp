@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/sha256.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "datasets/sha256.hpp"
 
 namespace odobench {
 namespace {

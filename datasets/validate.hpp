@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "base/error.hpp"
 #include "datasets/dataset.hpp"
-#include "datasets/error.hpp"
 
 namespace odobench {
 

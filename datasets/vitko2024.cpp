@@ -10,9 +10,9 @@
 #include <mutex>
 #include <thread>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "datasets/sha256.hpp"
 #include "datasets/synchronise.hpp"
 #include "datasets/vitko2024_csv.hpp"
 #include "datasets/vitko2024_join.hpp"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 #include "datasets/recording.hpp"
 
 namespace odobench::vitko2024 {

@@ -3,8 +3,8 @@
 #
 # usage: scripts/check.sh [ROOT]        ROOT: the checkout to look at (default: this one)
 #
-#   includes   datasets/ and reports/ include nothing of ours; problems/ only problems/ and the plain data of
-#              datasets/recording.hpp and datasets/entropy_window.hpp;
+#   includes   base/ includes nothing of ours, every other room may include base/; datasets/ and reports/ nothing else of ours;
+#              problems/ only problems/ and the plain data of datasets/recording.hpp and datasets/entropy_window.hpp;
 #              solvers/ only solvers/, problems/problem.hpp and problems/instruction_set.hpp; tests/ everything but bench/; paths from the root
 #   headers    begin with `#pragma once` (after comments)
 #   flags      no -march=native, no -ffast-math or its parts: results must not depend on the machine that built them
@@ -14,7 +14,7 @@ set -euo pipefail
 export LC_ALL=C.UTF-8
 
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
-rooms=(bench datasets problems reports solvers tests)
+rooms=(base bench datasets problems reports solvers tests)
 mapfile -t sources < <(find "${rooms[@]}" \( -name '*.cpp' -o -name '*.hpp' \) -type f 2>/dev/null | sort)
 if ((${#sources[@]} == 0)); then
   echo "check: no sources below $PWD" >&2
@@ -33,17 +33,19 @@ check_includes() {
       quoted = $0 ~ /include[ \t]*"/
       room = FILENAME; sub(/\/.*/, "", room)
       target = path; sub(/\/.*/, "", target)
-      ours = target ~ /^(bench|datasets|problems|reports|solvers|tests)$/ && path ~ /\//
+      ours = target ~ /^(base|bench|datasets|problems|reports|solvers|tests)$/ && path ~ /\//
       if (quoted && !ours) { bad("write the path from the repository root, or <...> for a library"); next }
       if (!quoted && ours) { bad("write our own headers in quotes"); next }
       if (!ours || target == room) next
       if (target == "bench") bad("nothing includes bench/")
       else if (target == "tests") bad("nothing but tests/ includes tests/")
-      else if (room == "datasets" || room == "reports") bad(room "/ includes nothing of ours")
+      else if (room == "base") bad("base/ includes nothing of ours")
+      else if (target == "base") next
+      else if (room == "datasets" || room == "reports") bad(room "/ includes nothing of ours but base/")
       else if (room == "problems" && path !~ /^datasets\/(recording|entropy_window)\.hpp$/)
-        bad("problems/ includes only problems/, datasets/recording.hpp and datasets/entropy_window.hpp")
+        bad("problems/ includes only base/, problems/, datasets/recording.hpp and datasets/entropy_window.hpp")
       else if (room == "solvers" && path !~ /^problems\/(problem|instruction_set)\.hpp$/)
-        bad("solvers/ includes only solvers/, problems/problem.hpp and problems/instruction_set.hpp")
+        bad("solvers/ includes only base/, solvers/, problems/problem.hpp and problems/instruction_set.hpp")
     }' "${sources[@]}"
 }
 

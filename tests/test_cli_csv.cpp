@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 #include "tests/support/filter_run_files.hpp"
 #include "tests/support/run_process.hpp"
 

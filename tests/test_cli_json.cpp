@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "datasets/sha256.hpp"
+#include "base/sha256.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/source_dir.hpp"

@@ -9,8 +9,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/files.hpp"
 #include "datasets/columns.hpp"
-#include "datasets/file_io.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"

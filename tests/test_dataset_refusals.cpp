@@ -5,9 +5,9 @@
 #include <functional>
 #include <limits>
 
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "datasets/dataset.hpp"
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/small_dataset.hpp"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/files.hpp"
 #include "datasets/columns.hpp"
-#include "datasets/file_io.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "datasets/simulate/parallel.hpp"
+#include "base/parallel.hpp"
 #include "datasets/simulate/scenario_file.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/drive_planning.hpp"
@@ -35,7 +35,7 @@ std::vector<ParameterInfo> infos(const Robot& robot) {
 }
 std::vector<DriveInformation> informations(const RecordingScenario& s, int replicas, std::uint64_t seed) {
   std::vector<DriveInformation> list(s.drives.size());
-  simulate::parallel_for(list.size(), 0, [&](std::size_t i) {
+  parallel_for(list.size(), 0, [&](std::size_t i) {
     std::vector<Recording> recordings;
     for (int k = 1; k <= replicas; ++k)
       recordings.push_back(simulate::simulate_drive(s, s.drives[i], k, seed).recording);

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/files.hpp"
+#include "base/sha256.hpp"
 #include "datasets/columns.hpp"
-#include "datasets/file_io.hpp"
-#include "datasets/sha256.hpp"
 #include "datasets/synchronise.hpp"
 #include "datasets/vitko2024.hpp"
 #include "datasets/vitko2024_csv.hpp"

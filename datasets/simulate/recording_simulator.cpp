@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 #include "datasets/noise.hpp"
 #include "datasets/simulate/logging.hpp"
 #include "datasets/simulate/plant.hpp"

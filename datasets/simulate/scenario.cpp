@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::simulate {

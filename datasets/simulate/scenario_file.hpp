@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "datasets/json_node.hpp"
+#include "base/json_node.hpp"
 #include "datasets/simulate/scenario.hpp"
 
 namespace odobench::simulate {

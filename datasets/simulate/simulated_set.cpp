@@ -7,8 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "base/parallel.hpp"
 #include "datasets/noise.hpp"
-#include "datasets/simulate/parallel.hpp"
 
 namespace odobench::simulate {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 
 namespace odobench::testing {
 

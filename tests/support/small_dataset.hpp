@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "base/sha256.hpp"
 #include "datasets/columns.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "datasets/sha256.hpp"
 
 namespace odobench::testing {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/error.hpp"
+#include "base/error.hpp"
 
 namespace odobench {
 

@@ -1,4 +1,4 @@
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 // Files written whole or not at all, their sums, and the matchers that the tests of the data room use.
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 
-#include "datasets/sha256.hpp"
+#include "base/sha256.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/small_dataset.hpp"

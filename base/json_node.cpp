@@ -1,4 +1,4 @@
-#include "datasets/json_node.hpp"
+#include "base/json_node.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 
 namespace odobench {
 namespace {

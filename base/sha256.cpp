@@ -1,4 +1,4 @@
-#include "datasets/sha256.hpp"
+#include "base/sha256.hpp"
 
 #include <openssl/evp.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "datasets/file_io.hpp"
+#include "base/files.hpp"
 
 namespace odobench {
 

@@ -8,12 +8,15 @@
 #include <thread>
 #include <vector>
 
-namespace odobench::simulate {
+#include "base/stop.hpp"
+
+namespace odobench {
 
 // work(0) ... work(count - 1), each once, on `threads` threads (0: as many as the machine has). After an exception no
-// further index begins; that of the lowest index is passed on.
+// further index begins; that of the lowest index is passed on. A stop that is asked for between two indices is such an exception
+// (Interruption).
 template <class Work>
-void parallel_for(std::size_t count, int threads, const Work& work) {
+void parallel_for(std::size_t count, int threads, const Work& work, const Stop& stop = {}) {
   std::size_t most = threads > 0 ? static_cast<std::size_t>(threads) : std::thread::hardware_concurrency();
   most = std::clamp<std::size_t>(most, 1, std::max<std::size_t>(count, 1));
   std::atomic<std::size_t> next{0};
@@ -23,6 +26,7 @@ void parallel_for(std::size_t count, int threads, const Work& work) {
   const auto run = [&] {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
+        stop.check();
         work(i);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex);
@@ -41,4 +45,4 @@ void parallel_for(std::size_t count, int threads, const Work& work) {
   if (error) std::rethrow_exception(error);
 }
 
-}  // namespace odobench::simulate
+}  // namespace odobench
