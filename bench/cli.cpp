@@ -8,6 +8,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "base/files.hpp"
+#include "base/text.hpp"
 #include "bench/check_command.hpp"
 #include "bench/compare_command.hpp"
 #include "bench/context.hpp"
@@ -96,8 +98,9 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   evaluate
-      ->add_option("--tracks", a.evaluate.tracks,
-                   "write the paths that the parameters give as CSV, for plots")
+      ->add_option(
+          "--tracks", a.evaluate.tracks,
+          "write the paths that the parameters give as CSV, for plots; - for standard output, without tables")
       ->type_name("FILE.CSV");
   add_kernel(*evaluate, a.evaluate.kernel, kLastBits);
   evaluate->add_option("--out", a.evaluate.out, "keep records, tables and tracks in this folder")
@@ -112,11 +115,14 @@ std::vector<Verb> add_reading_verbs(CLI::App& app, Arguments& a) {
 
   CLI::App* report = app.add_subcommand(
       "report", "stored runs as tables, as one HTML page, or as figures; nothing is solved again");
-  report->add_option("--out", a.report.out, "write one self-contained page that needs no network")
+  report
+      ->add_option("--out", a.report.out,
+                   "write one self-contained page that needs no network; - for standard output")
       ->type_name("FILE.HTML");
   report->add_option("--figures", a.report.figures, "write every figure as an SVG file into this folder")
       ->type_name("DIR");
   report->add_option("--title", a.report.title, "of the page [what was run]")->type_name("TEXT");
+  report->add_flag("--overwrite", a.report.overwrite, "replace the page or the figures that are there");
   report->add_option("runs", a.report.runs, "folders with runs.jsonl, or .jsonl files")->required();
   add_format(*report, a.report.format);
 
@@ -359,9 +365,8 @@ ExitCode dispatch(std::vector<std::string> words) {
   throw std::logic_error("no verb was parsed");
 }
 
-int fail(ExitCode code, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  const std::string line = fmt::format("bench: error: {}\n", message);
+int fail(ExitCode code, const std::string& message) {
+  const std::string line = fmt::format("bench: error: {}\n", one_line_message(message));
   std::fwrite(line.data(), 1, line.size(), stderr);
   return static_cast<int>(code);
 }
@@ -369,6 +374,7 @@ int fail(ExitCode code, std::string message) {
 }  // namespace
 
 int bench_main(int argc, char** argv) {
+  open_standard_descriptors();
   announce_crashes();
   try {
     return static_cast<int>(dispatch(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));

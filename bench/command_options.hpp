@@ -151,9 +151,10 @@ struct CheckOptions {
 
 struct ReportOptions {
   std::vector<std::string> runs;
-  std::string out;      // HTML page; empty: none
+  std::string out;      // HTML page, "-" for standard output; empty: none
   std::string figures;  // folder for SVG files; empty: none
   std::string title;    // of the page; empty: what was run
+  bool overwrite = false;
   std::string format = "console";
 };
 

@@ -3,16 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "base/files.hpp"
+#include "base/text.hpp"
+
 namespace odobench {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr std::uintmax_t kLargestConfig = 1 << 20;  // bytes
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\n");
@@ -26,22 +30,22 @@ std::string trimmed(const std::string& text) {
 
 void add(std::vector<ConfigEntry>& entries, ConfigEntry entry) {
   for (const ConfigEntry& e : entries)
-    if (e.key == entry.key) refuse(entry.where, fmt::format("'{}' is given twice", entry.key));
+    if (e.key == entry.key) refuse(entry.where, fmt::format("'{}' is given twice", shown(entry.key)));
   entries.push_back(std::move(entry));
 }
 
 std::string json_scalar(const Json& value, const std::string& where, const std::string& key) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean() || value.is_number()) return value.dump();
-  refuse(where, fmt::format("'{}' is {}; expected a text, a number, true, false or an array of these", key,
-                            value.type_name()));
+  refuse(where, fmt::format("'{}' is {}; expected a text, a number, true, false or an array of these",
+                            shown(key), value.type_name()));
 }
 
 std::vector<ConfigEntry> from_json(const std::string& path, const std::string& text) {
   std::set<std::string> seen;
   const Json::parser_callback_t no_duplicates = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(parsed.get<std::string>()).second)
-      refuse(path, fmt::format("'{}' is given twice", parsed.get<std::string>()));
+      refuse(path, fmt::format("'{}' is given twice", shown(parsed.get<std::string>())));
     return true;
   };
   Json root;
@@ -58,7 +62,8 @@ std::vector<ConfigEntry> from_json(const std::string& path, const std::string& t
       for (const Json& item : value) entry.values.push_back(json_scalar(item, path, key));
     else
       entry.values.push_back(json_scalar(value, path, key));
-    if (entry.values.empty()) refuse(path, fmt::format("'{}' is an empty array; expected a value", key));
+    if (entry.values.empty())
+      refuse(path, fmt::format("'{}' is an empty array; expected a value", shown(key)));
     entries.push_back(std::move(entry));
   }
   return entries;
@@ -73,7 +78,8 @@ std::string take_value(const std::string& text, std::size_t& begin, const char* 
   const char quote = text[begin];
   if (quote == '"' || quote == '\'') {
     const auto end = text.find(quote, begin + 1);
-    if (end == std::string::npos) refuse(where, fmt::format("no closing {} in '{}'", quote, trimmed(text)));
+    if (end == std::string::npos)
+      refuse(where, fmt::format("no closing {} in '{}'", quote, shown(trimmed(text))));
     const std::string value = text.substr(begin + 1, end - begin - 1);
     begin = end + 1;
     return value;
@@ -88,7 +94,7 @@ std::string take_value(const std::string& text, std::size_t& begin, const char* 
 void expect_end(const std::string& text, std::size_t begin, const std::string& where) {
   const std::string rest = begin < text.size() ? trimmed(text.substr(begin)) : "";
   if (!rest.empty() && rest[0] != '#' && rest[0] != ';')
-    refuse(where, fmt::format("text after the value: '{}'", rest));
+    refuse(where, fmt::format("text after the value: '{}'", shown(rest)));
 }
 
 std::vector<std::string> take_values(const std::string& text, const std::string& where) {
@@ -104,7 +110,7 @@ std::vector<std::string> take_values(const std::string& text, const std::string&
     values.push_back(take_value(text, begin, ",]", where));
     begin = text.find_first_not_of(" \t", begin);
     if (begin == std::string::npos || (text[begin] != ',' && text[begin] != ']'))
-      refuse(where, fmt::format("no closing ] in '{}'", trimmed(text)));
+      refuse(where, fmt::format("no closing ] in '{}'", shown(trimmed(text))));
     if (text[begin++] == ']') break;
   }
   expect_end(text, begin, where);
@@ -120,12 +126,13 @@ std::vector<ConfigEntry> from_ini(const std::string& path, const std::string& te
     const std::string where = fmt::format("{}:{}", path, number);
     if (line.empty() || line[0] == '#' || line[0] == ';') continue;
     if (line[0] == '[') {
-      if (line != "[run]") refuse(where, fmt::format("section '{}'; the only one known is [run]", line));
+      if (line != "[run]")
+        refuse(where, fmt::format("section '{}'; the only one known is [run]", shown(line)));
       continue;
     }
     const auto equals = line.find('=');
     if (equals == std::string::npos || equals == 0)
-      refuse(where, fmt::format("'{}'; expected key = value", line));
+      refuse(where, fmt::format("'{}'; expected key = value", shown(line)));
     add(entries, {trimmed(line.substr(0, equals)), take_values(line.substr(equals + 1), where), where});
   }
   return entries;
@@ -134,10 +141,12 @@ std::vector<ConfigEntry> from_ini(const std::string& path, const std::string& te
 }  // namespace
 
 std::vector<ConfigEntry> read_config(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  if (!file || !(content << file.rdbuf())) refuse(path, "cannot read this configuration file");
-  const std::string text = content.str();
+  std::string text;
+  try {
+    text = read_file(path, kLargestConfig);
+  } catch (const DataError& e) {  // options are usage
+    throw std::invalid_argument(e.what());
+  }
   const auto first = text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && text[first] == '{' ? from_json(path, text) : from_ini(path, text);
 }

@@ -176,13 +176,13 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   const std::vector<Table> tables = evaluation_tables(records);
   if (!options.out.empty()) {
     RecordFile file(options.out, options.overwrite);
-    remove_tracks(options.out);
     for (const RunRecord& r : records) file.append(r);
     save_run_tracks(loaded, records, options.out);
     save_tables(tables, options.out);
   }
-  if (!options.tracks.empty()) write_file(options.tracks, tracks_csv(*loaded.calibration, sets));
-  print_tables(tables, format);
+  if (!options.tracks.empty())
+    write_result(options.tracks, tracks_csv(*loaded.calibration, sets), existing_files(options.overwrite));
+  if (options.tracks != "-") print_tables(tables, format);
   return ExitCode::Success;
 }
 

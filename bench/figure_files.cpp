@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -41,8 +40,7 @@ class PrivateFolder {
 
   std::string write(std::string_view name, std::string_view text) const {
     const fs::path file = path_ / name;
-    std::ofstream out(file, std::ios::binary);
-    if (!(out << text).flush()) throw std::runtime_error(fmt::format("cannot write {}", file.string()));
+    write_file(file, text);
     return file.string();
   }
   std::string operator/(std::string_view name) const { return (path_ / name).string(); }
@@ -83,7 +81,7 @@ std::string specifications(const Document& document) {
 
 }  // namespace
 
-std::vector<fs::path> write_figures(const Document& document, const fs::path& folder) {
+std::vector<fs::path> write_figures(const Document& document, const fs::path& folder, Existing existing) {
   if (figures(document).empty()) return {};
   if (!has_chart_library())
     throw std::runtime_error(
@@ -106,7 +104,7 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
     throw std::runtime_error(said.empty() ? fmt::format("node ended with exit code {}", code)
                                           : said.substr(0, said.find('\n')));
   }
-  FileTransaction transaction;
+  FileTransaction transaction(existing);
   std::vector<fs::path> files;
   for (const Figure* figure : figures(document)) {
     const std::string name = figure->id + ".svg";

@@ -109,7 +109,8 @@ class FilterRun {
         with_truth_(!options.truth.empty()),
         interrupt_(interrupt) {
     if (!options.out.empty())
-      file_.emplace(options.out, setup.constants.samples, data.has_time(), setup.rotation_sign);
+      file_.emplace(options.out, existing_files(options.overwrite), setup.constants.samples, data.has_time(),
+                    setup.rotation_sign);
     if (!options.gap) return;
     exact_search_ = ternary_exact(
         profile_.blocks(), [&interrupt] { return interrupt.load(); }, kernel);
@@ -217,8 +218,7 @@ ExitCode filter_command(const FilterOptions& options) {
   const InstructionSet kernel = kernel_in_force(options.kernel);
   FilterSetup setup = make_filter_setup(options);
   refuse_existing("--out", options.out, options.overwrite);
-  if (!options.records.empty())
-    refuse_existing("--records", (fs::path(options.records) / "runs.jsonl").string(), options.overwrite);
+  if (!options.records.empty()) require_no_records(options.records, options.overwrite, "--records");
   // Before the data are read, which may take long or come but once.
   make_filter_method(options.solver, ProfileForm(setup.constants), options.budget, options.seed, kernel,
                      InterruptGuard::flag());
@@ -256,10 +256,11 @@ ExitCode filter_command(const FilterOptions& options) {
   run.commit();
   if (!options.records.empty()) {
     record.dataset_sha256 = checksum(options.data);
-    RecordFile(options.records, options.overwrite).append(record);
+    RecordFile file(options.records, options.overwrite, "--records");
+    file.append(record);
     save_tables(tables, options.records);
   }
-  print_tables(tables, format);
+  if (options.out != "-") print_tables(tables, format);
   if (rows.data().unfinished() && !options.quiet)
     note(fmt::format("{}: the last line has no line break; it was taken, since it has all its fields",
                      options.data));

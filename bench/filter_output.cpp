@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "bench/table_output.hpp"
+
 namespace odobench {
 namespace {
 
@@ -20,10 +22,24 @@ std::string header(int samples, bool with_time) {
 
 }  // namespace
 
-FilterOutputFile::FilterOutputFile(const std::filesystem::path& file, int samples, bool with_time,
-                                   double rotation_sign)
-    : with_time_(with_time), rotation_sign_(rotation_sign) {
-  transaction_.add(file, header(samples, with_time));
+FilterOutputFile::FilterOutputFile(const std::filesystem::path& file, Existing existing, int samples,
+                                   bool with_time, double rotation_sign)
+    : standard_output_(file == "-"),
+      transaction_(existing),
+      with_time_(with_time),
+      rotation_sign_(rotation_sign) {
+  if (standard_output_)
+    buffer_ = header(samples, with_time);
+  else
+    transaction_.add(file, header(samples, with_time));
+}
+
+void FilterOutputFile::flush() {
+  if (standard_output_)
+    print_text(buffer_);
+  else
+    transaction_.append(buffer_);
+  buffer_.clear();
 }
 
 // Shortest text that reads back as the same number, and a comma.
@@ -65,15 +81,12 @@ void FilterOutputFile::add(const FilterOutput& output, double time_s) {
   for (const double t : output.t) put(t);
   if (with_time_) put(time_s);
   buffer_.back() = '\n';
-  if (buffer_.size() < kPiece) return;
-  transaction_.append(buffer_);
-  buffer_.clear();
+  if (buffer_.size() >= kPiece) flush();
 }
 
 void FilterOutputFile::commit() {
-  transaction_.append(buffer_);
-  buffer_.clear();
-  transaction_.commit();
+  flush();
+  if (!standard_output_) transaction_.commit();
 }
 
 }  // namespace odobench

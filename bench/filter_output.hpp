@@ -14,8 +14,10 @@ namespace odobench {
 // remains.
 class FilterOutputFile {
  public:
-  // `rotation_sign`: of the output's rotation against the model's.
-  FilterOutputFile(const std::filesystem::path& file, int samples, bool with_time, double rotation_sign);
+  // `file`: "-" is standard output, which gets the rows as they come. `rotation_sign`: of the output's rotation against the
+  // model's.
+  FilterOutputFile(const std::filesystem::path& file, Existing existing, int samples, bool with_time,
+                   double rotation_sign);
   void add(const FilterOutput& output, double time_s);
   void commit();
 
@@ -23,6 +25,9 @@ class FilterOutputFile {
   void put(double value);
   void put(std::int64_t value);
 
+  void flush();
+
+  const bool standard_output_;
   FileTransaction transaction_;
   std::string buffer_;
   bool with_time_;

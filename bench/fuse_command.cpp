@@ -245,7 +245,6 @@ std::vector<std::string> sensor_notes(const Table& table) {
 void save_fusion(const FuseOptions& options, const std::vector<RunRecord>& records, const TrackSet& tracks,
                  const std::vector<Table>& tables) {
   RecordFile file(options.out, options.overwrite);
-  remove_tracks(options.out);
   for (const RunRecord& record : records) file.append(record);
   save_tracks(tracks, options.out);
   save_tables(tables, options.out);

@@ -106,7 +106,8 @@ std::string identifiability_note(const Problem& problem, const Identifiability& 
         problem.parameters()[static_cast<std::size_t>(id.parameters[static_cast<std::size_t>(i)])];
     const double deviation = id.standard_deviations[i];
     if (deviation * scale_of(p) > half_width(p))
-      list += fmt::format("{}{} {:.1f} %", list.empty() ? "" : ", ", p.name, 100 * deviation);
+      list += (list.empty() ? "" : ", ") + p.name +
+              (std::isfinite(deviation) ? fmt::format(" {:.1f} %", 100 * deviation) : " (no limit)");
   }
   if (list.empty()) return {};
   return fmt::format(

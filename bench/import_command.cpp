@@ -9,6 +9,7 @@
 
 #include "base/stop.hpp"
 #include "bench/interrupt.hpp"
+#include "bench/option_values.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
 #include "datasets/demo_generator.hpp"
@@ -18,14 +19,9 @@
 namespace odobench {
 namespace {
 
-void refuse_existing(const std::filesystem::path& set, bool overwrite) {
-  if (!overwrite && std::filesystem::exists(set))
-    throw std::invalid_argument(
-        fmt::format("{}: it exists; choose another name or give --overwrite", set.string()));
-}
-
-void save(const Dataset& dataset, const std::filesystem::path& set, bool json) {
-  const std::vector<std::filesystem::path> files = save_dataset(dataset, set);
+void save(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json) {
+  const std::vector<std::filesystem::path> files =
+      save_dataset(dataset, set, false, existing_files(overwrite));
   std::size_t samples = 0;
   for (const Recording& r : dataset.recordings) samples += r.size();
   note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
@@ -40,7 +36,7 @@ ExitCode import_command(const ImportOptions& options) {
     throw std::invalid_argument(fmt::format("bench import '{}'{}: known sources: vitko2024", options.source,
                                             near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
-  refuse_existing(options.out, options.overwrite);
+  require_writable(options.out, existing_files(options.overwrite));
   const bool draw = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   const InterruptGuard guard;
   const auto progress = [draw](int done, int total) {
@@ -54,14 +50,14 @@ ExitCode import_command(const ImportOptions& options) {
   if (InterruptGuard::flag().load()) throw Interruption();
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
-  save(dataset, options.out, options.json);
+  save(dataset, options.out, options.overwrite, options.json);
   return ExitCode::Success;
 }
 
 ExitCode demo_command(const DemoOptions& options) {
   const std::filesystem::path set = std::filesystem::path(options.out) / "set.json";
-  refuse_existing(set, options.overwrite);
-  save(make_demo_dataset(options.seed.value_or(kDemoSeed)), set, options.json);
+  require_writable(set, existing_files(options.overwrite));
+  save(make_demo_dataset(options.seed.value_or(kDemoSeed)), set, options.overwrite, options.json);
   return ExitCode::Success;
 }
 

@@ -27,10 +27,19 @@ std::vector<std::string> comma_items(const std::vector<std::string>& lists) {
   return all;
 }
 
+Existing existing_files(bool overwrite) {
+  return overwrite ? Existing::Replace : Existing::Refuse;
+}
+
 void refuse_existing(const char* option, const std::string& path, bool overwrite) {
-  if (!path.empty() && !overwrite && std::filesystem::exists(path))
+  if (!path.empty() && path != "-") require_writable(path, existing_files(overwrite), option);
+}
+
+void refuse_existing_folder(const char* option, const std::string& path, bool overwrite) {
+  std::error_code e;
+  if (!overwrite && std::filesystem::exists(std::filesystem::symlink_status(path, e)))
     throw std::invalid_argument(
-        fmt::format("{}={}: it exists; choose another name or give --overwrite", option, path));
+        fmt::format("{}={}: it exists; choose another name or give --overwrite", option, shown_path(path)));
 }
 
 int thread_count(int asked) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files.hpp"
 #include "problems/instruction_set.hpp"
 
 namespace odobench {
@@ -14,8 +15,12 @@ std::vector<std::string> comma_items(const std::string& list);
 // Of every list, one after the other.
 std::vector<std::string> comma_items(const std::vector<std::string>& lists);
 
-// Throws std::invalid_argument "OPTION=PATH: it exists; ..." unless it may be overwritten; "" is no path.
+Existing existing_files(bool overwrite);
+
+// require_writable() for the value of an option; "" and "-" (standard output) are no files.
 void refuse_existing(const char* option, const std::string& path, bool overwrite);
+// Of a folder to write into: throws std::invalid_argument when it is there and may not be overwritten.
+void refuse_existing_folder(const char* option, const std::string& path, bool overwrite);
 
 // `asked`, or for 0 one per core.
 int thread_count(int asked);

@@ -1,12 +1,8 @@
 #include "bench/records.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <system_error>
@@ -15,6 +11,8 @@
 #include "base/files.hpp"
 #include "bench/context.hpp"
 #include "bench/identifiability.hpp"
+#include "bench/option_values.hpp"
+#include "bench/table_output.hpp"
 #include "problems/classic/classic_problems.hpp"
 
 namespace odobench {
@@ -170,45 +168,52 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
   return record;
 }
 
-void require_no_records(const std::filesystem::path& folder, bool overwrite) {
-  if (overwrite || !std::filesystem::exists(folder / "runs.jsonl")) return;
-  throw std::invalid_argument(fmt::format(
-      "--out={}: it holds runs.jsonl already; choose another folder or give --overwrite", folder.string()));
+namespace {
+
+// What belongs to the records of a folder, runs.jsonl first.
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files = table_files(folder);
+  files.insert(files.begin(), folder / "runs.jsonl");
+  files.push_back(folder / "tracks" / "tracks.json");
+  return files;
 }
 
-RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite) : path_(folder / "runs.jsonl") {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw std::invalid_argument(
-        fmt::format("--out={}: cannot make this folder: {}", folder.string(), error.message()));
-  require_replaceable(path_);
-  file_ =
-      ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
-  if (file_ >= 0) return;
-  if (errno == EEXIST) require_no_records(folder, overwrite);
-  throw std::invalid_argument(
-      fmt::format("--out={}: cannot write runs.jsonl there: {}", folder.string(), std::strerror(errno)));
+}  // namespace
+
+void require_no_records(const std::filesystem::path& folder, bool overwrite, const char* option) {
+  require_own_folder(folder / "tracks");
+  for (const std::filesystem::path& file : result_files(folder)) {
+    require_replaceable(file);
+    std::error_code error;
+    if (!overwrite && std::filesystem::exists(file, error))
+      throw std::invalid_argument(
+          fmt::format("{}={}: it holds {} already; choose another folder or give --overwrite", option,
+                      shown_path(folder), file.lexically_relative(folder).string()));
+  }
 }
 
-RecordFile::~RecordFile() {
-  ::close(file_);
+RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite, const char* option) {
+  try {
+    file_ = std::make_unique<LineFile>(folder / "runs.jsonl", existing_files(overwrite));
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("{}={}: {}", option, shown_path(folder), e.what()));
+  }
+  if (!overwrite) return;
+  // What was made of the records that are gone would tell of them until the new ones are complete.
+  for (const std::filesystem::path& file : result_files(folder)) {
+    std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
+    if (file != file_->path()) std::filesystem::remove(file, error);
+  }
 }
 
 void RecordFile::append(const RunRecord& record) {
-  const std::string line = to_json_line(record) + "\n";
-  const off_t before = ::lseek(file_, 0, SEEK_END);
-  ssize_t written = -1;
-  do {
-    written = ::write(file_, line.data(), line.size());
-  } while (written < 0 && errno == EINTR);
-  if (written == static_cast<ssize_t>(line.size())) return;
-  const std::string reason = written < 0 ? std::strerror(errno) : "the disc is full";
-  if (written > 0 && ::ftruncate(file_, before) != 0) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot append a record: {}; the last line is incomplete", path_.string(), reason));
-  }
-  throw std::runtime_error(fmt::format("{}: cannot append a record: {}", path_.string(), reason));
+  file_->append(to_json_line(record));
+}
+
+void RecordFile::replace(const std::vector<RunRecord>& records) {
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  file_->replace(text);
 }
 
 }  // namespace odobench

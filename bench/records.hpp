@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/files.hpp"
 #include "bench/cells.hpp"
 #include "bench/problem_factory.hpp"
 #include "reports/record.hpp"
@@ -23,27 +25,25 @@ std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
 RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
                             const RunContext& context);
 
-// Throws std::invalid_argument when the folder holds runs already and they may not be replaced: before long work.
-void require_no_records(const std::filesystem::path& folder, bool overwrite);
+// Throws std::invalid_argument when the folder holds runs, their tables or tracks already and they may not be replaced, or something
+// in their place that is no regular file: before long work.
+void require_no_records(const std::filesystem::path& folder, bool overwrite, const char* option = "--out");
 
-// DIR/runs.jsonl, appended to record by record: each is one write of a whole line, so that a process that is
-// killed leaves every record it completed.
+// DIR/runs.jsonl (LineFile): a process that is killed leaves every record it completed, and no other process
+// writes to the folder as long as the object lives.
 class RecordFile {
  public:
-  // Creates the folder and the file. Throws std::invalid_argument when that is not possible, or when the file
-  // exists and `overwrite` is not set.
-  RecordFile(const std::filesystem::path& folder, bool overwrite);
-  ~RecordFile();
-  RecordFile(const RecordFile&) = delete;
-  RecordFile& operator=(const RecordFile&) = delete;
+  // Creates the folder and the file; tables and tracks of earlier records are removed. Throws std::invalid_argument when that is
+  // not possible, or when the file exists and `overwrite` is not set.
+  RecordFile(const std::filesystem::path& folder, bool overwrite, const char* option = "--out");
 
-  const std::filesystem::path& path() const { return path_; }
-  // Throws std::runtime_error when the disc is full or the like; a part of a line is taken back then.
+  // Throws DataError when the disc is full or the like; a part of a line is taken back then.
   void append(const RunRecord& record);
+  // Puts these in the place of all so far.
+  void replace(const std::vector<RunRecord>& records);
 
  private:
-  std::filesystem::path path_;
-  int file_ = -1;
+  std::unique_ptr<LineFile> file_;
 };
 
 }  // namespace odobench

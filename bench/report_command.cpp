@@ -79,18 +79,23 @@ ExitCode report_command(const ReportOptions& options) {
         format);
     return ExitCode::Success;
   }
+  const Existing existing = existing_files(options.overwrite);
+  refuse_existing("--out", options.out, options.overwrite);
+  if (options.out == "-" && format == Format::Json)
+    throw std::invalid_argument("--out=-: standard output takes the page, not JSON as well");
   const Document document = make_report(report_input(options, records));
   std::vector<fs::path> written;
   if (!options.out.empty()) {
-    write_file(options.out, render_html(document));
-    written.emplace_back(options.out);
+    write_result(options.out, render_html(document), existing);
+    if (options.out != "-") written.emplace_back(options.out);
     note(has_chart_library()
              ? fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
                            document.sections.size())
              : fmt::format("{}: tables without charts, since {}", options.out, why_no_charts()));
   }
   if (!options.figures.empty()) {
-    for (fs::path& file : write_figures(document, options.figures)) written.push_back(std::move(file));
+    for (fs::path& file : write_figures(document, options.figures, existing))
+      written.push_back(std::move(file));
     note(fmt::format("{}: {} figures", options.figures, figures(document).size()));
   }
   if (format == Format::Json) print_tables({written_table(written)}, format);
@@ -105,12 +110,13 @@ ExitCode export_command(const ExportOptions& options) {
         "{}: no tracks/tracks.json; runs of 'bench run', 'evaluate' and 'fuse' with --out have one",
         options.run));
   const fs::path out = options.out;
-  refuse_existing("--out", options.out, options.overwrite);
-  FileTransaction transaction;
+  refuse_existing_folder("--out", options.out, options.overwrite);
+  FileTransaction transaction(existing_files(options.overwrite));
   std::vector<fs::path> written;
   std::set<std::string> taken;
   const auto add = [&](const std::string& label, const PoseColumns& pose) {
     const std::string folder = folder_name(label, taken);
+    require_own_folder(out / folder);
     for (const TrackRecording& r : set->recordings) {
       written.push_back(out / folder / (vega::slug(r.id) + ".tum"));
       transaction.add(written.back(), tum_text(*set, r, pose));

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "base/text.hpp"
 #include "bench/config_file.hpp"
 #include "bench/number_text.hpp"
 #include "solvers/options.hpp"
@@ -100,8 +101,8 @@ void apply_config(CLI::App& app, const std::string& config) {
     const bool no_key = entry.key == "config" || entry.key == "help" || entry.key == "version";
     CLI::Option* option = no_key ? nullptr : app.get_option_no_throw("--" + entry.key);
     if (option == nullptr)
-      throw std::invalid_argument(
-          fmt::format("{}: unknown key '{}'{}", entry.where, entry.key, option_suggestion(app, entry.key)));
+      throw std::invalid_argument(fmt::format("{}: unknown key '{}'{}", entry.where, shown(entry.key),
+                                              option_suggestion(app, entry.key)));
     if (option->count() > 0) continue;
     try {
       for (const std::string& value : entry.values) option->add_result(value);

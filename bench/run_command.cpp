@@ -139,12 +139,6 @@ std::vector<std::string> progress_labels(const std::vector<RunCell>& cells,
   return labels;
 }
 
-void write_in_order(const std::filesystem::path& path, const std::vector<RunRecord>& records) {
-  std::string text;
-  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
-  write_file(path, text);
-}
-
 ExitCode outcome(const RunOptions& options, const std::vector<RunRecord>& records, std::size_t cells,
                  bool interrupted) {
   std::size_t runs = 0, stopped = 0;
@@ -180,8 +174,8 @@ ExitCode run_command(const RunOptions& options) {
   const RunContext context = run_context(threads, kernel);
   std::unique_ptr<RecordFile> file;
   if (!options.out.empty()) {
+    require_no_records(options.out, options.overwrite);
     file = std::make_unique<RecordFile>(options.out, options.overwrite);
-    remove_tracks(options.out);
   }
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
@@ -217,7 +211,7 @@ ExitCode run_command(const RunOptions& options) {
   if (file) {
     for (const LoadedProblem& one : loaded) save_run_tracks(one, records, options.out);
     // Cells end in an order that depends on the threads; the finished file does not.
-    if (!recorder.in_order()) write_in_order(file->path(), records);
+    if (!recorder.in_order()) file->replace(records);
     save_tables(tables, options.out);
   }
   print_tables(tables, format);

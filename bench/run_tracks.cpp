@@ -1,6 +1,5 @@
 #include "bench/run_tracks.hpp"
 
-#include <system_error>
 #include <utility>
 
 #include "base/files.hpp"
@@ -53,11 +52,6 @@ void save_tracks(const TrackSet& set, const fs::path& run_directory) {
   FileTransaction transaction;
   for (const auto& [file, bytes] : track_files(set)) transaction.add(run_directory / file, bytes);
   transaction.commit();
-}
-
-void remove_tracks(const fs::path& run_directory) {
-  std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
-  fs::remove(run_directory / "tracks" / "tracks.json", error);
 }
 
 }  // namespace odobench

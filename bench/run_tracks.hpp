@@ -23,7 +23,4 @@ void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& 
 
 void save_tracks(const TrackSet& set, const std::filesystem::path& run_directory);
 
-// What an earlier run left there would belong to other records.
-void remove_tracks(const std::filesystem::path& run_directory);
-
 }  // namespace odobench

@@ -149,7 +149,7 @@ DynamicsScenario read_dynamics(const JsonNode& root, const simulate::ScenarioHea
 
 fs::path find(const std::string& source) {
   std::error_code error;
-  if (fs::is_regular_file(source, error)) return source;
+  if (fs::exists(source, error) && !fs::is_directory(source, error)) return source;
   std::vector<std::string> names;
   std::string list;
   for (const auto& [name, path] : known_scenarios()) {

@@ -9,6 +9,7 @@
 #include "base/files.hpp"
 #include "base/parallel.hpp"
 #include "base/sha256.hpp"
+#include "bench/option_values.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
@@ -22,12 +23,6 @@ namespace {
 
 constexpr std::size_t kRawDrives = 6;  // what the importer of raw files expects, five repetitions of each
 constexpr int kRawRepetitions = 5;
-
-void refuse_existing(const fs::path& file, bool overwrite) {
-  if (!overwrite && fs::exists(file))
-    throw std::invalid_argument(
-        fmt::format("{}: it exists; choose another folder or give --overwrite", file.string()));
-}
 
 void require_raw(const simulate::RecordingScenario& s) {
   if (s.exact)
@@ -71,16 +66,19 @@ void write_recordings(const simulate::RecordingScenario& s, const SimulateOption
     throw std::invalid_argument(
         "--as-published: it corrects nothing here; it belongs to scenarios of kind dynamics");
   if (o.raw) require_raw(s);
-  refuse_existing(o.raw ? out / "abs_1.csv" : set_json, o.overwrite);
+  const Existing existing = existing_files(o.overwrite);
+  for (const fs::path& file : {o.raw ? out / "abs_1.csv" : set_json, out / "truth.json", out / "truth.csv"})
+    require_writable(file, existing);
   const simulate::SimulatedSet set = simulate::simulate_set(s, o.seed, o.threads);
-  FileTransaction files;
+  FileTransaction files(existing);
   files.add(out / "truth.json", simulate::truth_json(s, o.seed, set));
   files.add(out / "truth.csv", simulate::truth_csv(s, set));
-  if (o.raw) add_raw_files(set, o.threads, out, files);
-  std::vector<fs::path> written = files.targets();
+  if (o.raw)
+    add_raw_files(set, o.threads, out, files);
+  else
+    add_dataset(set.dataset, set_json, files);
+  const std::vector<fs::path> written = files.targets();
   files.commit();
-  if (!o.raw)
-    for (fs::path& file : save_dataset(set.dataset, set_json)) written.push_back(std::move(file));
   std::size_t samples = 0;
   for (const Recording& r : set.dataset.recordings) samples += r.size();
   if (!o.quiet)
@@ -93,7 +91,7 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   if (o.raw) throw std::invalid_argument("--raw: it belongs to scenarios of kind recordings");
   const fs::path out = o.out;
   for (const char* name : {"sensors.csv", "truth.csv", "state.csv", "robot.json"})
-    refuse_existing(out / name, o.overwrite);
+    require_writable(out / name, existing_files(o.overwrite));
   if (o.as_published) {
     s.setup.model = dynamics::ModelOptions::as_published();
     s.frame = dynamics::AccelerationFrame::World;
@@ -102,7 +100,7 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   Random random(derive_seed(o.seed, {"dynamics", s.name}));
   const dynamics::SensorRun run =
       dynamics::sense(s.setup.robot, samples, s.frame, s.noise, [&random] { return random.normal(); });
-  FileTransaction files;
+  FileTransaction files(existing_files(o.overwrite));
   files.add(out / "sensors.csv", dynamics::sensor_csv(run.rows));
   files.add(out / "truth.csv", dynamics::truth_csv(run.truth));
   files.add(out / "state.csv", dynamics::state_csv(s.setup.robot, samples));

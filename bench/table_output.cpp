@@ -3,24 +3,24 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
-#include "base/files.hpp"
+#include "base/text.hpp"
 #include "bench/progress.hpp"
 
 namespace odobench {
 namespace {
 
 constexpr int kPlainWidth = 110;
+constexpr std::array kSaved{Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex};
 
-void line(const char* kind, std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  const std::string whole = fmt::format("bench: {}{}\n", kind, text);
+void line(const char* kind, const std::string& text) {
+  const std::string whole = fmt::format("bench: {}{}\n", kind, one_line_message(text));
   std::fwrite(whole.data(), 1, whole.size(), stderr);
 }
 
@@ -43,9 +43,22 @@ void print_tables(const std::vector<Table>& tables, Format format) {
   print_text(render(tables, format, {terminal_width(STDOUT_FILENO, kPlainWidth), bold_is_welcome()}));
 }
 
+void write_result(const std::string& path, std::string_view bytes, Existing existing) {
+  if (path == "-")
+    print_text(std::string(bytes));
+  else
+    write_file(path, bytes, existing);
+}
+
+std::vector<std::filesystem::path> table_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const Format format : kSaved) files.push_back(folder / ("tables." + file_extension(format)));
+  return files;
+}
+
 void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder) {
   FileTransaction files;
-  for (const Format format : {Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex})
+  for (const Format format : kSaved)
     files.add(folder / ("tables." + file_extension(format)), render(tables, format, {kPlainWidth, false}));
   files.commit();
 }

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/files.hpp"
 #include "reports/table.hpp"
 
 namespace odobench {
@@ -15,10 +17,15 @@ namespace odobench {
 void print_tables(const std::vector<Table>& tables, Format format);
 void print_text(const std::string& text);
 
-// tables.txt, .md, .csv, .json and .tex in `folder`, all or none. Throws DataError.
+// `bytes` to a file (write_file), or to standard output where `path` is "-".
+void write_result(const std::string& path, std::string_view bytes, Existing existing);
+
+// tables.txt, .md, .csv, .json and .tex in a folder.
+std::vector<std::filesystem::path> table_files(const std::filesystem::path& folder);
+// Writes them, all or none. Throws DataError.
 void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder);
 
-// One line on standard error: "bench: warning: ...".
+// One line on standard error: "bench: warning: ...", escaped and of bounded length (one_line_message).
 void warn(const std::string& text);
 void note(const std::string& text);
 

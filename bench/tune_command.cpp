@@ -116,7 +116,7 @@ void write_sensors(const TuneOptions& options, const FusionOptions& fusion,
     if (s.kind != SensorKind::Heading) filter["sigma_position"] = s.sigma_position;
     filter["sigma_heading"] = s.sigma_heading;
   }
-  write_file(options.out, root.dump(2) + "\n");
+  write_file(options.out, root.dump(2) + "\n", existing_files(options.overwrite));
 }
 
 // A sigma that the cost does not depend on (the wheels' velocity where only headings are measured) ends anywhere: it goes

@@ -203,7 +203,10 @@ ExitCode windows_command(const WindowsOptions& options) {
   const RunContext context = run_context(threads, kernel_in_force(options.kernel));
   const std::size_t per_window = plan_cells(plan, notes).size();
   std::unique_ptr<RecordFile> file;
-  if (!options.out.empty()) file = std::make_unique<RecordFile>(options.out, options.overwrite);
+  if (!options.out.empty()) {
+    require_no_records(options.out, options.overwrite);
+    file = std::make_unique<RecordFile>(options.out, options.overwrite);
+  }
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
 

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/text.hpp"
+
 namespace odobench {
 namespace {
 
 // Enough of a wrong field to recognise it.
 std::string quoted(std::string_view text) {
-  return text.size() <= 60 ? fmt::format("\"{}\"", text) : fmt::format("\"{}...\"", text.substr(0, 57));
+  return fmt::format("\"{}\"", shown(text));
 }
 
 }  // namespace
@@ -150,10 +152,11 @@ double CsvRow::number(std::string_view text, std::size_t column) const {
   const Decimal now = first == point ? Decimal::Comma : has_point ? Decimal::Point : Decimal::Unknown;
   const auto [end, error] = std::from_chars(first, first + digits.size(), value);
   if (error != std::errc() || end != first + digits.size() || !std::isfinite(value))
-    fail(fmt::format("found {} in column \"{}\", expected a finite number", quoted(text), names_[column]));
+    fail(
+        fmt::format("found {} in column {}, expected a finite number", quoted(text), quoted(names_[column])));
   if (now != Decimal::Unknown && decimal_ != Decimal::Unknown && now != decimal_)
-    fail(fmt::format("found {} in column \"{}\", expected a decimal {} as in the numbers before it",
-                     quoted(text), names_[column], decimal_ == Decimal::Comma ? "comma" : "point"));
+    fail(fmt::format("found {} in column {}, expected a decimal {} as in the numbers before it", quoted(text),
+                     quoted(names_[column]), decimal_ == Decimal::Comma ? "comma" : "point"));
   if (now != Decimal::Unknown) decimal_ = now;
   return value;
 }

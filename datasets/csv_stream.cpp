@@ -10,6 +10,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "base/files.hpp"
+
 namespace odobench {
 namespace {
 
@@ -24,7 +26,7 @@ std::string shown_name(const std::filesystem::path& file) {
 
 CsvStream::CsvStream(const std::filesystem::path& file, char separator, const std::atomic<bool>* interrupt)
     : CsvRow(shown_name(file), separator), interrupt_(interrupt) {
-  descriptor_ = file == "-" ? ::dup(STDIN_FILENO) : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  descriptor_ = file == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3) : open_regular(file);
   if (descriptor_ < 0)
     throw DataError(fmt::format("{}: cannot be read: {}", shown_name(file),
                                 std::error_code(errno, std::generic_category()).message()));

@@ -6,6 +6,7 @@
 #include "base/files.hpp"
 #include "base/json_node.hpp"
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "datasets/columns.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/dataset_format.hpp"
@@ -108,16 +109,33 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
                             fmt::format("{} as in time_us", recording.size()));
 }
 
-void read_recording_file(const JsonNode& node, const fs::path& folder, Recording& recording) {
-  const fs::path relative = node.at("file").text();
+// FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither by its text nor
+// through a link.
+fs::path file_below(const fs::path& folder, const JsonNode& node) {
+  const std::string text = node.text();
+  const fs::path relative = text;
   const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
-  if (relative.empty() || relative.is_absolute() || climbs)
-    node.at("file").fail('"' + relative.string() + '"', "a path below the folder of the set");
+  const bool odd = std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; });
+  if (relative.empty() || relative.is_absolute() || climbs || odd)
+    node.fail('"' + shown(text) + '"', "a path below the folder of the set");
+  fs::path file = folder;
+  std::error_code e;
+  bool linked = false;
+  for (const fs::path& part : relative) linked = fs::is_symlink(file /= part, e) || linked;
+  if (!linked) return file;
+  const fs::path inside = fs::weakly_canonical(folder.empty() ? "." : folder, e);
+  const fs::path target = fs::weakly_canonical(file, e);
+  if (std::mismatch(inside.begin(), inside.end(), target.begin(), target.end()).first != inside.end())
+    node.fail(fmt::format("a link to {}", shown_path(target)), "a file below the folder of the set");
+  return file;
+}
+
+void read_recording_file(const JsonNode& node, const fs::path& folder, Recording& recording) {
+  const fs::path file = file_below(folder, node.at("file"));
   const std::int64_t samples = node.at("samples").integer();
   if (samples < 2) node.at("samples").fail(fmt::format("{} samples", samples), "at least 2");
   const std::string sum = node.at("sha256").text();
   if (!is_sha256(sum)) node.at("sha256").fail('"' + sum + '"', "64 lower-case hexadecimal digits");
-  const fs::path file = folder / relative;
   decode_recording(read_file(file), {file.string(), static_cast<std::size_t>(samples), sum}, recording);
 }
 

@@ -99,10 +99,19 @@ void check(const Dataset& d, const std::string& file) {
 
 }  // namespace
 
-std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings) {
+std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings,
+                                   Existing existing) {
+  FileTransaction files(existing);
+  add_dataset(d, set_json, files, inline_recordings);
+  std::vector<fs::path> written = files.targets();
+  files.commit();
+  return written;
+}
+
+void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& files, bool inline_recordings) {
   check(d, set_json.string());
-  FileTransaction files;
   const std::string folder = set_json.stem().string() + "_recordings";
+  if (!inline_recordings) require_own_folder(set_json.parent_path() / folder);
   Json recordings = Json::array();
   for (const Recording& r : d.recordings) {
     Json entry = recording_head(r);
@@ -137,9 +146,6 @@ std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, b
     throw DataError(fmt::format("{}: cannot be written: {}", set_json.string(), e.what()));
   }
   files.add(set_json, text);  // last: it refers to the others
-  std::vector<fs::path> written = files.targets();
-  files.commit();
-  return written;
 }
 
 }  // namespace odobench

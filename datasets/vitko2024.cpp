@@ -12,6 +12,7 @@
 
 #include "base/files.hpp"
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "datasets/synchronise.hpp"
 #include "datasets/vitko2024_csv.hpp"
@@ -55,7 +56,7 @@ Sums read_sums(const fs::path& folder) {
     if (row.size() < 67 || !is_sha256(row.substr(0, 64)) || row[64] != ' ' ||
         (row[65] != ' ' && row[65] != '*'))
       throw DataError(fmt::format("{}:{}: found \"{}\", expected \"<64 hexadecimal digits>  <file>\"",
-                                  sums.file.string(), line, row.substr(0, 80)));
+                                  sums.file.string(), line, shown(row)));
     sums.entries[row.substr(66)] = {row.substr(0, 64), line};
   }
   return sums;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/text.hpp"
 #include "datasets/csv_table.hpp"
 
 namespace odobench::vitko2024 {
@@ -33,8 +34,8 @@ std::size_t for_each_entry(const CsvTable& row, std::size_t column, Visit visit)
                                          (text.front() == '(' && text.back() == ')'));
   if (!list)
     row.fail(fmt::format("found {} in column \"{}\", expected a list like (0.0, 1.0)",
-                         text.empty() ? "nothing" : fmt::format("\"{}\"", text.substr(0, 40)),
-                         row.name(column)));
+                         text.empty() ? "nothing" : fmt::format("\"{}\"", shown(text)),
+                         shown(row.name(column))));
   text = text.substr(1, text.size() - 2);
   if (trimmed(text).empty()) return 0;
   std::size_t count = 0;
@@ -50,7 +51,7 @@ std::int64_t time_of(const CsvTable& row, std::size_t column) {
   std::int64_t time_us = 0;
   if (!parse_time(row.field(column), time_us))
     row.fail(fmt::format("found \"{}\" in column \"{}\", expected a time like 2024/05/03/12:34:34.823195",
-                         row.field(column).substr(0, 40), row.name(column)));
+                         shown(row.field(column)), shown(row.name(column))));
   return time_us;
 }
 
@@ -76,8 +77,10 @@ WheelMap map_names(const CsvTable& row, std::size_t column) {
     }
     if (slot == nullptr)
       row.fail(fmt::format(
-          "found the unknown wheel name \"{}\", expected FL, BL, BR or FR with _Position or _Wheel", entry));
-    if (*slot != absent) row.fail(fmt::format("found the wheel name \"{}\" twice, expected it once", entry));
+          "found the unknown wheel name \"{}\", expected FL, BL, BR or FR with _Position or _Wheel",
+          shown(entry)));
+    if (*slot != absent)
+      row.fail(fmt::format("found the wheel name \"{}\" twice, expected it once", shown(entry)));
     *slot = index;
   });
   for (std::size_t i = 0; i < kWheelCount; ++i)
@@ -94,7 +97,7 @@ void read_list(const CsvTable& row, std::size_t column, std::size_t entries, std
                  [&](std::size_t, std::string_view entry) { values.push_back(row.number(entry, column)); });
   if (values.size() != entries)
     row.fail(fmt::format("found {} entries in column \"{}\", expected {} as there are names", values.size(),
-                         row.name(column), entries));
+                         shown(row.name(column)), entries));
 }
 
 bool digits(std::string_view text, std::size_t at, std::size_t count, int& value) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "reports/comparison.hpp"
 #include "reports/json_view.hpp"
 #include "reports/metrics.hpp"
@@ -193,7 +194,7 @@ void check_tolerances(const Tolerances& t) {
 }  // namespace
 
 Baseline read_baseline(const std::string& path) {
-  const std::string content = read_text(path);
+  const std::string content = read_file(path);
   try {
     const json document = json::parse(content);
     Baseline baseline = baseline_from(JsonView(document));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "base/text.hpp"
+
 namespace odobench {
 namespace {
 
@@ -18,7 +20,8 @@ std::size_t sequence_length(char first) {
 
 }  // namespace
 
-std::string html_escape(std::string_view text) {
+std::string html_escape(std::string_view given) {
+  const std::string text = printable(given);
   std::string out;
   out.reserve(text.size());
   for (const char c : text) {
@@ -55,7 +58,7 @@ std::string html_symbol(std::string_view name) {
 }
 
 std::string html_json(const nlohmann::json& json) {
-  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = safe_json(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   replace_all(text, "<", "\\u003c");
   return text;
 }

@@ -3,14 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
-#include <system_error>
 
 namespace odobench {
 namespace {
@@ -131,17 +126,6 @@ std::string complaint(const nlohmann::json::exception& error) {
   if (text.rfind("parse error", 0) == 0)
     if (const auto colon = text.find(": "); colon != std::string::npos) text.erase(0, colon + 2);
   return text;
-}
-
-std::string read_text(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw std::runtime_error(fmt::format("{}: cannot be read: it is a folder, expected a file", path));
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream.is_open())
-    throw std::runtime_error(
-        fmt::format("{}: cannot be read: {}", path, std::generic_category().message(errno)));
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 }  // namespace odobench

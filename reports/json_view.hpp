@@ -51,7 +51,4 @@ nlohmann::json finite_or_null(const std::optional<double>& value);
 // ...".
 std::string complaint(const nlohmann::json::exception& error);
 
-// Whole text of a file; throws std::runtime_error "path: cannot be read: reason".
-std::string read_text(const std::string& path);
-
 }  // namespace odobench

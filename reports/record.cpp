@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "reports/json_view.hpp"
 
 namespace odobench {
@@ -249,8 +250,11 @@ std::string to_json_line(const RunRecord& record) {
   return to_json(record).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+// Lines of a few kB to MB each, read whole.
+constexpr std::uintmax_t kLargestRecords = std::uintmax_t{1} << 33;
+
 std::vector<RunRecord> read_records(const std::string& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_file(path, kLargestRecords);
   std::vector<RunRecord> records;
   std::size_t begin = 0;
   for (int line_number = 1; begin < text.size(); ++line_number) {

@@ -1,8 +1,29 @@
 #include <fmt/format.h>
 
+#include <charconv>
+#include <string_view>
+#include <system_error>
+
 #include "reports/table.hpp"
 
 namespace odobench {
+
+namespace {
+
+bool is_number(const std::string& text) {
+  double value = 0;
+  const char* const begin = text.data() + (text.front() == '+' ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+// A spreadsheet would compute what begins like this: the usual apostrophe makes it text. Numbers and a lone dash are harmless.
+std::string guarded(const std::string& text) {
+  if (text.size() < 2 || std::string_view("=+-@").find(text.front()) == std::string_view::npos) return text;
+  return is_number(text) ? text : "'" + text;
+}
+
+}  // namespace
 
 std::string csv_field(const std::string& text) {
   const bool plain = text.find_first_of(",\"\r\n") == std::string::npos &&
@@ -62,18 +83,18 @@ std::string render_csv(const std::vector<Table>& tables) {
   for (const Table& table : tables) {
     if (!out.empty()) out += "\r\n";
     const std::vector<Extras> extras = extras_of(table);
-    out += line_of({"#table", table.id, table.title});
+    out += line_of({"#table", table.id, guarded(table.title)});
     out += line_of(header(table, extras));
     for (const auto& row : table.rows) {
       std::vector<std::string> fields;
       for (std::size_t c = 0; c < row.size(); ++c) {
-        fields.push_back(row[c].value ? exact(row[c].value) : row[c].text);
+        fields.push_back(row[c].value ? exact(row[c].value) : guarded(row[c].text));
         if (extras[c].difference) fields.push_back(exact(row[c].difference));
-        if (extras[c].mark) fields.push_back(row[c].mark);
+        if (extras[c].mark) fields.push_back(guarded(row[c].mark));
       }
       out += line_of(fields);
     }
-    for (const std::string& note : table.notes) out += line_of({"#note", note});
+    for (const std::string& note : table.notes) out += line_of({"#note", guarded(note)});
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/text.hpp"
 #include "reports/json_view.hpp"
 #include "reports/table.hpp"
 
@@ -52,7 +53,7 @@ std::string render_json(const std::vector<Table>& tables) {
   Json list = Json::array();
   for (const Table& table : tables) list.push_back(table_json(table));
   const Json document{{"schema_version", 1}, {"tables", std::move(list)}};
-  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return safe_json(document.dump(1, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace odobench

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/text.hpp"
 #include "reports/cell_text.hpp"
 
 namespace odobench {
@@ -102,6 +103,32 @@ void mark_for_people(std::vector<Table>& tables, Format format) {
   }
 }
 
+// `lines`: line breaks stay, as a quoted field of CSV may have them.
+std::string seen_text(const std::string& text, bool lines) {
+  std::string out;
+  std::size_t begin = 0;
+  for (std::size_t at = 0; at <= text.size(); ++at) {
+    const bool blank = at < text.size() && (text[at] == '\n' || text[at] == '\r' || text[at] == '\t');
+    if (at < text.size() && !blank) continue;
+    out += printable(std::string_view(text).substr(begin, at - begin));
+    if (blank) out += lines && text[at] == '\n' ? '\n' : ' ';
+    begin = at + 1;
+  }
+  return out;
+}
+
+// Names come from files and may hold what a terminal obeys; JSON has escapes of its own.
+void make_printable(Table& table, bool lines) {
+  table.title = seen_text(table.title, lines);
+  for (std::string& note : table.notes) note = seen_text(note, lines);
+  for (Column& column : table.columns)
+    for (std::string* text : {&column.id, &column.name, &column.unit, &column.group})
+      *text = seen_text(*text, lines);
+  for (auto& row : table.rows)
+    for (Cell& cell : row)
+      for (std::string* text : {&cell.text, &cell.mark}) *text = seen_text(*text, lines);
+}
+
 }  // namespace
 
 Cell text_cell(std::string text) {
@@ -158,6 +185,8 @@ std::string worse_note(const Table& table) {
 std::string render(const std::vector<Table>& given, Format format, const RenderOptions& options) {
   for (const Table& table : given) check(table);
   std::vector<Table> tables = given;
+  if (format != Format::Json)
+    for (Table& table : tables) make_printable(table, format == Format::Csv);
   if (format != Format::Csv && format != Format::Json) mark_for_people(tables, format);
   switch (format) {
     case Format::Console:

@@ -4,30 +4,10 @@
 #include <array>
 #include <cstddef>
 
+#include "base/text.hpp"
+
 namespace odobench {
 namespace {
-
-struct CodePoint {
-  char32_t value = 0xFFFD;
-  std::size_t bytes = 1;
-};
-
-CodePoint decode(std::string_view text, std::size_t at) {
-  const auto lead = static_cast<unsigned char>(text[at]);
-  if (lead < 0x80) return {lead, 1};
-  const std::size_t bytes = lead >= 0xF0 && lead < 0xF8   ? 4
-                            : lead >= 0xE0 && lead < 0xF0 ? 3
-                            : lead >= 0xC2 && lead < 0xE0 ? 2
-                                                          : 0;
-  if (bytes == 0 || at + bytes > text.size()) return {};
-  char32_t value = lead & (0xFFu >> (bytes + 1));
-  for (std::size_t k = 1; k < bytes; ++k) {
-    const auto next = static_cast<unsigned char>(text[at + k]);
-    if ((next & 0xC0) != 0x80) return {};
-    value = (value << 6) | (next & 0x3Fu);
-  }
-  return {value, bytes};
-}
 
 struct Range {
   char32_t first, last;
@@ -67,7 +47,7 @@ std::size_t fitting(std::string_view text, int width) {
   std::size_t at = 0;
   int used = 0;
   while (at < text.size()) {
-    const CodePoint c = decode(text, at);
+    const CodePoint c = code_point_at(text, at);
     used += width_of(c.value);
     if (used > width && at > 0) break;
     at += c.bytes;
@@ -98,7 +78,7 @@ void wrap_line(std::string_view line, int width, std::vector<std::string>& out) 
 int display_width(std::string_view text) {
   int width = 0;
   for (std::size_t at = 0; at < text.size();) {
-    const CodePoint c = decode(text, at);
+    const CodePoint c = code_point_at(text, at);
     width += width_of(c.value);
     at += c.bytes;
   }

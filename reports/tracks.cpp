@@ -8,6 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "reports/json_view.hpp"
 
 namespace odobench {
@@ -64,7 +65,7 @@ void require_length(const PoseColumns& pose, std::size_t n, const std::string& w
 
 // The numbers of a file that must hold `count` of them, in the shape given.
 std::vector<double> read_npy(const fs::path& file, const std::string& shape, std::size_t count) {
-  const std::string bytes = read_text(file.string());
+  const std::string bytes = read_file(file);
   const std::string header = npy_header(shape);
   if (bytes.compare(0, header.size(), header) != 0)
     throw std::runtime_error(
@@ -156,7 +157,7 @@ std::optional<TrackSet> read_tracks(const fs::path& run_directory) {
   const fs::path folder = run_directory / kFolder;
   const fs::path file = folder / "tracks.json";
   if (!fs::exists(file)) return std::nullopt;
-  const std::string text = read_text(file.string());
+  const std::string text = read_file(file);
   json document;
   try {
     document = json::parse(text);

@@ -2,7 +2,7 @@
 # Makes the checkout ready: installs the Debian packages that are missing, configures, builds.
 # Takes about a second when there is nothing to do. Writes to standard error only, and only when it does something.
 #
-# usage: scripts/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, sanitize, profile, coverage; TARGET: default is everything
+# usage: scripts/setup.sh [PRESET [TARGET...]]      PRESET: release (default), dev, sanitize, fuzz, profile, coverage; TARGET: default is everything
 #
 # ODOBENCH_SKIP_PACKAGES=1        do not look for packages (another system, or dependencies installed by other means)
 # ODOBENCH_EXTRA_PACKAGES="a b"   install these as well (CI: the tools of its checks)

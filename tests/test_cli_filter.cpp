@@ -256,7 +256,8 @@ TEST(CliFilter, RecordsAndReport) {
   EXPECT_GT(list[0].evaluations, 0);
   const ProcessResult report = run_bench({"report", records, "--format=json"});
   EXPECT_EQ(report.out, out);
-  expect_refusal({"filter", "--data=x.csv", "--records=" + records}, kUsage, {"--records=", "it exists"});
+  expect_refusal({"filter", "--data=x.csv", "--records=" + records}, kUsage,
+                 {"--records=", "holds runs.jsonl already"});
 }
 
 struct Refusal {
@@ -354,11 +355,17 @@ TEST(CliFilter, WrongUsage) {
                  {"none.csv", "cannot be read"});
 }
 
+std::vector<std::string> from_pipe(const std::string& pipe, const std::string& out) {
+  return {
+      "/bin/sh", "-c",
+      "exec '" + testing::bench_words({}).front() + "' filter --data=- --out='" + out + "' <'" + pipe + "'"};
+}
+
 TEST(CliFilter, CtrlCKeepsTheWindowsSoFar) {
   const TemporaryFolder folder;
   const std::string fifo = (folder / "fifo").string(), out = (folder / "out.csv").string();
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  Process process(testing::bench_words({"filter", "--data=" + fifo, "--out=" + out}));
+  Process process(from_pipe(fifo, out));
   std::ofstream writer(fifo);  // waits for the reader
   writer << plain_run(2000) << std::flush;
   // The temporary file shows that windows were written.
@@ -385,8 +392,7 @@ TEST(CliFilter, CtrlCBeforeTheFirstWindow) {
   const TemporaryFolder folder;
   const std::string fifo = (folder / "fifo").string();
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  Process process(
-      testing::bench_words({"filter", "--data=" + fifo, "--out=" + (folder / "out.csv").string()}));
+  Process process(from_pipe(fifo, (folder / "out.csv").string()));
   std::ofstream writer(fifo);
   writer << plain_run(5) << std::flush;
   std::this_thread::sleep_for(std::chrono::milliseconds(300));

@@ -28,36 +28,6 @@ using testing::replaced;
 using testing::run_bench;
 using testing::TemporaryFolder;
 
-// Random windows of several N in the format that bench reads.
-std::string some_windows() {
-  json list = json::array();
-  for (int i = 0; i < 6; ++i) {
-    const EntropyWindow w = testing::random_window(4 + i, static_cast<unsigned>(i));
-    const EntropyConstants& c = w.constants;
-    // One steering angle per wheel and window.
-    json j = {
-        {"id", w.id}, {"group", i < 3 ? "short" : "long"}, {"N", c.samples}, {"psi", {0.1, -0.2, 0.3, 0}}};
-    j["params"] = {{"sigma_e", c.sigma_encoder},
-                   {"sigma_a", c.sigma_acceleration},
-                   {"sigma_theta", c.sigma_rotation},
-                   {"L", c.wheel_distance},
-                   {"dt", c.dt},
-                   {"ilgis", 100 * c.length},
-                   {"plotis", 100 * c.width},
-                   {"step_a", c.step_acceleration},
-                   {"step_z", c.step_rotation}};
-    j["ce"] = json::array({json::array(), json::array(), json::array(), json::array()});
-    for (const EntropySample& s : w.samples) {
-      for (std::size_t k = 0; k < 4; ++k) j["ce"][k].push_back(s.wheel[k]);
-      j["ax"].push_back(s.ax);
-      j["ay"].push_back(s.ay);
-      j["ctheta"].push_back(s.rotation);
-    }
-    list.push_back(j);
-  }
-  return json{{"format", "entropy-window-1"}, {"windows", list}}.dump();
-}
-
 json tables(std::vector<std::string> words) {
   words.insert(words.begin(), "windows");
   words.push_back("--format=json");
@@ -68,7 +38,7 @@ json tables(std::vector<std::string> words) {
 
 TEST(CliWindows, InvariantOnEveryWindow) {
   const TemporaryFolder folder;
-  const json all = tables({folder.file("w.json", some_windows())});
+  const json all = tables({folder.file("w.json", testing::windows_json())});
   ASSERT_EQ(all.size(), 2u);
   const json& rows = all[0].at("rows");
   ASSERT_EQ(rows.size(), 6u * 3);
@@ -95,7 +65,7 @@ TEST(CliWindows, InvariantOnEveryWindow) {
 
 TEST(CliWindows, RecordsReportSeedsAndThreads) {
   const TemporaryFolder folder;
-  const std::string file = folder.file("w.json", some_windows()), out = (folder / "out").string();
+  const std::string file = folder.file("w.json", testing::windows_json()), out = (folder / "out").string();
   const std::vector<std::string> words = {file, "--solver=pso,exact", "--max-evals=300", "--repeat=2",
                                           "--only=long"};
   std::vector<std::string> recorded = words;
@@ -125,7 +95,7 @@ TEST(CliWindows, RecordsReportSeedsAndThreads) {
 
 TEST(CliWindows, Refuses) {
   const TemporaryFolder folder;
-  const std::string text = some_windows(), out = "--out=" + (folder / "out").string();
+  const std::string text = testing::windows_json(), out = "--out=" + (folder / "out").string();
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& part) {
     expect_refusal({"windows", folder.file("w.json", replaced(text, from, to)), out}, kData,
                    {"w.json", part});

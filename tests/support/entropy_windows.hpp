@@ -49,4 +49,35 @@ inline EntropyWindow random_window(int samples, unsigned seed, double noise = 1)
   return window;
 }
 
+// Random windows of several N in the format that bench reads.
+inline std::string windows_json() {
+  using nlohmann::json;
+  json list = json::array();
+  for (int i = 0; i < 6; ++i) {
+    const EntropyWindow w = random_window(4 + i, static_cast<unsigned>(i));
+    const EntropyConstants& c = w.constants;
+    // One steering angle per wheel and window.
+    json j = {
+        {"id", w.id}, {"group", i < 3 ? "short" : "long"}, {"N", c.samples}, {"psi", {0.1, -0.2, 0.3, 0}}};
+    j["params"] = {{"sigma_e", c.sigma_encoder},
+                   {"sigma_a", c.sigma_acceleration},
+                   {"sigma_theta", c.sigma_rotation},
+                   {"L", c.wheel_distance},
+                   {"dt", c.dt},
+                   {"ilgis", 100 * c.length},
+                   {"plotis", 100 * c.width},
+                   {"step_a", c.step_acceleration},
+                   {"step_z", c.step_rotation}};
+    j["ce"] = json::array({json::array(), json::array(), json::array(), json::array()});
+    for (const EntropySample& s : w.samples) {
+      for (std::size_t k = 0; k < 4; ++k) j["ce"][k].push_back(s.wheel[k]);
+      j["ax"].push_back(s.ax);
+      j["ay"].push_back(s.ay);
+      j["ctheta"].push_back(s.rotation);
+    }
+    list.push_back(j);
+  }
+  return json{{"format", "entropy-window-1"}, {"windows", list}}.dump();
+}
+
 }  // namespace odobench::testing

@@ -45,7 +45,8 @@ std::string TemporaryFolder::file(const std::string& name, const std::string& te
   return (path_ / name).string();
 }
 
-Process::Process(const std::vector<std::string>& words) {
+Process::Process(const std::vector<std::string>& words, const std::vector<std::string>& environment) {
+  std::vector<std::string> variables = environment;
   std::vector<std::string> copy = words;
   std::vector<char*> argv;
   for (std::string& word : copy) argv.push_back(word.data());
@@ -60,6 +61,7 @@ Process::Process(const std::vector<std::string>& words) {
   dup2(in, STDIN_FILENO);
   dup2(to_out, STDOUT_FILENO);
   dup2(to_err, STDERR_FILENO);
+  for (std::string& variable : variables) putenv(variable.data());
   execv(argv[0], argv.data());
   _exit(127);
 }
@@ -98,6 +100,13 @@ ProcessResult run_bench(const std::vector<std::string>& arguments, double timeou
   return Process(bench_words(arguments)).wait(timeout_s);
 }
 
+ProcessResult run_bench_in_shell(const std::vector<std::string>& arguments, const std::string& suffix,
+                                 double timeout_s) {
+  std::string command = "exec";
+  for (const std::string& word : bench_words(arguments)) command += " '" + word + "'";
+  return Process({"/bin/sh", "-c", command + " " + suffix}).wait(timeout_s);
+}
+
 std::string content(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
@@ -110,6 +119,15 @@ std::vector<std::string> lines(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) list.push_back(line);
   return list;
+}
+
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      names.push_back(entry.path().lexically_relative(folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 bool wait_for_lines(const fs::path& file, std::size_t count, double timeout_s) {

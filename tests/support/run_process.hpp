@@ -33,8 +33,9 @@ struct ProcessResult {
 
 class Process {
  public:
-  // Starts words[0] with standard input empty, standard output and error captured.
-  explicit Process(const std::vector<std::string>& words);
+  // Starts words[0] with standard input empty, standard output and error captured, and these variables ("NAME=VALUE") in its
+  // environment besides.
+  explicit Process(const std::vector<std::string>& words, const std::vector<std::string>& environment = {});
   ~Process();  // kills what still runs
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -49,10 +50,16 @@ class Process {
 
 // The bench of this build with these arguments.
 ProcessResult run_bench(const std::vector<std::string>& arguments, double timeout_s = 120);
+// The same through a shell: "BENCH ARGUMENTS SUFFIX", e.g. with a suffix ">&-". Arguments must not hold quotes.
+ProcessResult run_bench_in_shell(const std::vector<std::string>& arguments, const std::string& suffix,
+                                 double timeout_s = 120);
 std::vector<std::string> bench_words(const std::vector<std::string>& arguments);
 
 std::string content(const std::filesystem::path& file);
 std::vector<std::string> lines(const std::string& text);
+
+// Names of all files and folders below a folder, relative to it, sorted.
+std::vector<std::string> files_below(const std::filesystem::path& folder);
 
 // Waits until the file has at least `count` complete lines; false after `timeout_s`.
 bool wait_for_lines(const std::filesystem::path& file, std::size_t count, double timeout_s = 60);
