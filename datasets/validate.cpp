@@ -53,6 +53,8 @@ class Validator {
   void check_recordings() const {
     require(!d_.recordings.empty(), "/recordings", "found none, expected at least one");
     std::set<std::string> ids;
+    std::set<std::string_view> trajectories;
+    for (const Trajectory& t : d_.trajectories) trajectories.insert(t.name);
     std::set<std::pair<std::string, int>> repetitions;
     for (std::size_t i = 0; i < d_.recordings.size(); ++i) {
       const Recording& r = d_.recordings[i];
@@ -65,9 +67,7 @@ class Validator {
       require(std::all_of(r.id.begin(), r.id.end(), plain) && r.id[0] != '.', path + "/id",
               fmt::format("found \"{}\", expected letters, digits, '_', '-' and '.', not beginning with '.'",
                           r.id));
-      const bool known = std::any_of(d_.trajectories.begin(), d_.trajectories.end(),
-                                     [&](const Trajectory& t) { return t.name == r.trajectory; });
-      require(known, path + "/trajectory",
+      require(trajectories.count(r.trajectory) != 0, path + "/trajectory",
               fmt::format("found \"{}\", expected the name of one of the {} trajectories", r.trajectory,
                           d_.trajectories.size()));
       require(r.repetition >= 1, path + "/repetition",
