@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stop.hpp"
 #include "datasets/recording.hpp"
 
 namespace odobench {
@@ -72,8 +73,8 @@ Dataset load_dataset(const std::filesystem::path& set_json);
 
 // Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings"
 // beside it. Everything is written to temporary names and renamed when complete. Returns what was written. Throws DataError
-// when it cannot be.
+// when it cannot be, Interruption, with nothing left behind, when a stop is asked for before the last recording.
 std::vector<std::filesystem::path> save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
-                                                bool inline_recordings = false);
+                                                bool inline_recordings = false, const Stop& stop = {});
 
 }  // namespace odobench

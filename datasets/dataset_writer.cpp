@@ -99,12 +99,14 @@ void check(const Dataset& d, const std::string& file) {
 
 }  // namespace
 
-std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings) {
+std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, bool inline_recordings,
+                                   const Stop& stop) {
   check(d, set_json.string());
   FileTransaction files;
   const std::string folder = set_json.stem().string() + "_recordings";
   Json recordings = Json::array();
   for (const Recording& r : d.recordings) {
+    stop.check();
     Json entry = recording_head(r);
     if (inline_recordings) {
       entry["columns"] = inline_columns(r);
