@@ -7,7 +7,6 @@
 #include <cctype>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "base/files.hpp"
 
@@ -57,29 +56,41 @@ std::string broken(const json::parse_error& e, std::string_view text, const std:
   return fmt::format("{}:{}: broken JSON: {}", file, line, what);
 }
 
-// Called at every token: collects the keys of the objects being read, and knows where the reading is.
+// Builds the document from the library's events, refuses a key that an object has already, and knows where the reading is.
+// Not the library's own parser with a callback: that one looks through all elements of an array after every object in it, which is
+// quadratic in the number of recordings.
 class Reading {
  public:
-  explicit Reading(const std::string& file) : file_(file) {}
-  bool operator()(json::parse_event_t event, const json& parsed) {
-    using Event = json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      open_.emplace_back();
-      open_.back().is_array = event == Event::array_start;
-    } else if (event == Event::object_end || event == Event::array_end) {
-      open_.pop_back();
-      next();
-    } else if (event == Event::key) {
-      open_.back().key = parsed.get<std::string>();
-      if (!open_.back().keys.insert(open_.back().key).second)
-        throw DataError(
-            fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(parsed)));
-    } else if (event == Event::value && !open_.empty()) {
-      const bool names = !open_.back().is_array && (open_.back().key == "id" || open_.back().key == "name");
-      if (names && parsed.is_string()) open_.back().id = parsed.get<std::string>();
-      next();
-    }
+  Reading(const std::string& file, json& root) : file_(file), root_(root) {}
+
+  bool null() { return value(nullptr); }
+  bool boolean(bool v) { return value(v); }
+  bool number_integer(json::number_integer_t v) { return value(v); }
+  bool number_unsigned(json::number_unsigned_t v) { return value(v); }
+  bool number_float(json::number_float_t v, const std::string&) { return value(v); }
+  bool string(std::string& v) {
+    if (!open_.empty() && !open_.back().is_array && (open_.back().key == "id" || open_.back().key == "name"))
+      open_.back().id = v;
+    return value(std::move(v));
+  }
+  bool binary(json::binary_t& v) { return value(std::move(v)); }
+  bool start_object(std::size_t) { return start(json::object(), false); }
+  bool start_array(std::size_t) { return start(json::array(), true); }
+  bool end_object() { return end(); }
+  bool end_array() { return end(); }
+  bool key(std::string& name) {
+    Level& level = open_.back();
+    const auto [member, is_new] = level.value->get_ref<json::object_t&>().emplace(name, nullptr);
+    level.key = name;
+    level.member = &member->second;
+    if (!is_new)
+      throw DataError(
+          fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(json(name))));
     return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const json::exception& error) {
+    if (const auto* broken = dynamic_cast<const json::parse_error*>(&error)) throw *broken;
+    throw DataError(fmt::format("{}: broken JSON: {}", file_, error.what()));
   }
 
   // "/windows/3 (p003)/ax/5": numbers count from 0, the id or name of an element in brackets.
@@ -97,13 +108,40 @@ class Reading {
     bool is_array = false;
     std::size_t index = 0;
     std::string key, id;
-    std::set<std::string> keys;
+    json* value = nullptr;
+    json* member = nullptr;  // of an object: where the value of `key` goes
   };
+  // Into the place that is next. Elements move when their array grows, but none of them is open then.
+  json* put(json v) {
+    if (open_.empty()) return &(root_ = std::move(v));
+    Level& level = open_.back();
+    if (!level.is_array) return &(*level.member = std::move(v));
+    level.value->push_back(std::move(v));
+    return &level.value->back();
+  }
+  bool value(json v) {
+    put(std::move(v));
+    next();
+    return true;
+  }
+  bool start(json empty, bool is_array) {
+    Level level;
+    level.is_array = is_array;
+    level.value = put(std::move(empty));
+    open_.push_back(std::move(level));
+    return true;
+  }
+  bool end() {
+    open_.pop_back();
+    next();
+    return true;
+  }
   void next() {
     if (!open_.empty() && open_.back().is_array) ++open_.back().index;
   }
 
   const std::string& file_;
+  json& root_;
   std::vector<Level> open_;
 };
 
@@ -120,10 +158,9 @@ JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value, 
 JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& file) {
   auto document = std::make_shared<Document>();
   document->file = file.string();
-  Reading reading(document->file);
+  Reading reading(document->file, document->root);
   try {
-    document->root = json::parse(
-        text, [&reading](int, json::parse_event_t event, json& parsed) { return reading(event, parsed); });
+    json::sax_parse(text, &reading);
   } catch (const json::parse_error& e) {
     throw DataError(broken(e, text, document->file, reading.place()));
   } catch (const json::exception& e) {

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 
 #include "bench/context.hpp"
 #include "solvers/random.hpp"
@@ -20,8 +22,8 @@ namespace {
 // Hands out the cells in order and keeps the first exception.
 class Dispatcher {
  public:
-  Dispatcher(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
-             int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher)
+  Dispatcher(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+             const std::atomic<bool>& interrupt, CellWatcher& watcher)
       : problems_(problems),
         cells_(cells),
         budget_(budget),
@@ -48,7 +50,7 @@ class Dispatcher {
 
  private:
   void run(std::size_t index) {
-    const RunCell& cell = cells_[index];
+    const RunCell cell = cells_[index];
     watcher_.started(index);
     SolveOptions options;
     options.budget = budget_;
@@ -66,7 +68,7 @@ class Dispatcher {
   }
 
   const std::vector<Problem>& problems_;
-  const std::vector<RunCell>& cells_;
+  const CellList& cells_;
   const Budget& budget_;
   const int threads_;
   const std::atomic<bool>& interrupt_;
@@ -108,32 +110,46 @@ std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
   return specs;
 }
 
-std::vector<RunCell> plan_cells(const CellPlan& plan, std::vector<std::string>& notes) {
-  std::vector<RunCell> cells;
+void CellList::add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes) {
   std::string once;
-  for (const SolverSpec& solver : plan.solvers) {
+  for (std::size_t k = 0; k < plan.solvers.size(); ++k) {
+    const SolverSpec& solver = plan.solvers[k];
     const bool same_each_time = !find_solver(solver.name).stochastic && !plan.random_start;
     if (same_each_time && plan.repeat > 1) once += (once.empty() ? "" : ", ") + solver.text();
-    for (int repetition = 1; repetition <= (same_each_time ? 1 : plan.repeat); ++repetition) {
-      const std::string number = std::to_string(repetition);
-      RunCell cell;
-      cell.solver = solver;
-      if (solver.name != plan.polish.name) cell.polish = plan.polish;
-      cell.repetition = repetition;
-      cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, solver.text(), number});
-      cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
-      cell.random_start = plan.random_start;
-      cells.push_back(std::move(cell));
-    }
+    groups_.push_back({size_, k, plans_.size()});
+    size_ += same_each_time ? 1 : static_cast<std::size_t>(plan.repeat);
   }
+  plans_.push_back(plan);
+  problems_.push_back(problem);
+  if (size_ > kMostRuns)
+    throw std::invalid_argument(fmt::format(
+        "--repeat={}: together more than {} runs; expected fewer repetitions, solvers or problems, "
+        "or several calls, each with its --seed",
+        plan.repeat, kMostRuns));
   if (!once.empty())
     notes.push_back(fmt::format("{}: deterministic, so run once from the nominal start instead of {} times",
                                 once, plan.repeat));
-  return cells;
 }
 
-void run_cells(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
-               int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher) {
+RunCell CellList::operator[](std::size_t index) const {
+  const auto after = std::upper_bound(groups_.begin(), groups_.end(), index,
+                                      [](std::size_t i, const Group& group) { return i < group.begin; });
+  const Group& group = *std::prev(after);
+  const CellPlan& plan = plans_[group.plan];
+  RunCell cell;
+  cell.solver = plan.solvers[group.solver];
+  if (cell.solver.name != plan.polish.name) cell.polish = plan.polish;
+  cell.problem = problems_[group.plan];
+  cell.repetition = static_cast<int>(index - group.begin) + 1;
+  const std::string number = std::to_string(cell.repetition);
+  cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, cell.solver.text(), number});
+  cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
+  cell.random_start = plan.random_start;
+  return cell;
+}
+
+void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+               const std::atomic<bool>& interrupt, CellWatcher& watcher) {
   Dispatcher dispatcher(problems, cells, budget, threads, interrupt, watcher);
   if (threads <= 1) {
     dispatcher.work();

@@ -37,11 +37,31 @@ struct CellPlan {
 std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
                                         std::vector<std::string>& notes);
 
-// One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set, solver,
-// repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the same for
-// every solver. A deterministic solver from the nominal start gives the same answer each time: it gets one
-// cell, and `notes` a line. A polish applies to every solver but itself.
-std::vector<RunCell> plan_cells(const CellPlan& plan, std::vector<std::string>& notes);
+// Runs of one call at most: their records are kept until the tables are made, up to 20 kB each.
+inline constexpr std::size_t kMostRuns = 200'000;
+
+// The cells of any number of problems. A cell is made when it is asked for, so that a hundred thousand repetitions begin at once.
+class CellList {
+ public:
+  // One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set, solver,
+  // repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the same for
+  // every solver. A deterministic solver from the nominal start gives the same answer each time: it gets one
+  // cell, and `notes` a line. A polish applies to every solver but itself. `problem`: as of RunCell. Throws
+  // std::invalid_argument when there are more than kMostRuns.
+  void add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes);
+
+  std::size_t size() const { return size_; }
+  RunCell operator[](std::size_t cell) const;
+
+ private:
+  struct Group {
+    std::size_t begin = 0, solver = 0, plan = 0;
+  };
+  std::size_t size_ = 0;
+  std::vector<CellPlan> plans_;
+  std::vector<std::size_t> problems_;  // of each plan
+  std::vector<Group> groups_;
+};
 
 // What is going on, called from the threads that run: implementations lock.
 class CellWatcher {
@@ -57,7 +77,7 @@ class CellWatcher {
 // have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins, and one
 // that had not evaluated anything is not reported. After an
 // exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
-void run_cells(const std::vector<Problem>& problems, const std::vector<RunCell>& cells, const Budget& budget,
-               int threads, const std::atomic<bool>& interrupt, CellWatcher& watcher);
+void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+               const std::atomic<bool>& interrupt, CellWatcher& watcher);
 
 }  // namespace odobench

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/sha256.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
 #include "bench/written.hpp"
@@ -50,6 +51,7 @@ ExitCode check_command(const CheckOptions& options) {
         if (std::tie(old.problem, old.dataset, old.label) ==
             std::tie(entry.problem, entry.dataset, entry.label))
           entry.tolerances = old.tolerances;
+    InterruptGuard::remember();
     write_file(options.baseline, to_json_text(baseline));
     note(fmt::format("{}: {} entries written", options.baseline, baseline.entries.size()));
     if (format == Format::Json) print_tables({written_table({options.baseline})}, format);

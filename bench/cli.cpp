@@ -19,6 +19,7 @@
 #include "bench/filter_command.hpp"
 #include "bench/fusion_arguments.hpp"
 #include "bench/import_command.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/list_command.hpp"
 #include "bench/number_text.hpp"
 #include "bench/plan_command.hpp"
@@ -296,7 +297,7 @@ std::vector<Verb> add_simulation_verbs(CLI::App& app, Arguments& a) {
       ->allow_extra_args(false);
   plan->add_option_function<std::string>(
           "--wanted",
-          [&a](const std::string& text) { a.plan.wanted = finite_number("--wanted", text, true) / 100; },
+          [&a](const std::string& text) { a.plan.wanted = finite_number("--wanted", text, true, 1e6) / 100; },
           "standard deviation of every parameter, % of its nominal value [0.5]")
       ->type_name("PERCENT");
   add_count(*plan, "--replicas", a.plan.replicas, 2, 10000,
@@ -376,6 +377,7 @@ int fail(ExitCode code, const std::string& message) {
 int bench_main(int argc, char** argv) {
   open_standard_descriptors();
   announce_crashes();
+  const InterruptGuard guard;
   try {
     return static_cast<int>(dispatch(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));
   } catch (...) {

@@ -7,9 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "base/stop.hpp"
 #include "bench/exit_code.hpp"
-#include "bench/interrupt.hpp"
 #include "bench/progress.hpp"
 #include "solvers/derivative_check.hpp"
 #include "solvers/random.hpp"
@@ -59,7 +57,6 @@ std::vector<Worst> worst_of(const LoadedProblem& loaded, std::uint64_t base_seed
                             CountLine& progress) {
   std::vector<Worst> worst;
   for (int k = 0; k <= kRandomPoints; ++k) {
-    if (InterruptGuard::flag().load()) throw Interruption();
     const std::uint64_t seed =
         derive_seed(base_seed, {loaded.name(), loaded.dataset_name(), "derivatives", std::to_string(k)});
     const Vector x = k == 0 ? loaded.problem.start() : random_start(loaded.problem, seed);

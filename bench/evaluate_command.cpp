@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "bench/context.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
@@ -175,13 +176,17 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   }
   const std::vector<Table> tables = evaluation_tables(records);
   if (!options.out.empty()) {
+    InterruptGuard::remember();
     RecordFile file(options.out, options.overwrite);
     for (const RunRecord& r : records) file.append(r);
     save_run_tracks(loaded, records, options.out);
     save_tables(tables, options.out);
   }
-  if (!options.tracks.empty())
-    write_result(options.tracks, tracks_csv(*loaded.calibration, sets), existing_files(options.overwrite));
+  if (!options.tracks.empty()) {
+    const std::string csv = tracks_csv(*loaded.calibration, sets);
+    InterruptGuard::remember();
+    write_result(options.tracks, csv, existing_files(options.overwrite));
+  }
   if (options.tracks != "-") print_tables(tables, format);
   return ExitCode::Success;
 }

@@ -9,7 +9,7 @@ enum class ExitCode : int {
   Usage = 2,  // the command line, a configuration file or an output place is wrong (std::invalid_argument)
   Data = 3,   // a data set, record or parameter file is wrong (DataError, std::runtime_error)
   Internal = 70,     // something that nobody foresaw: a fault of the program (EX_SOFTWARE)
-  Interrupted = 130  // SIGINT or SIGTERM; what was complete is kept
+  Interrupted = 130  // SIGINT, SIGTERM or SIGHUP; what was complete is kept
 };
 
 }  // namespace odobench

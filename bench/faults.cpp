@@ -81,7 +81,7 @@ Ending ending_of(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
   } catch (const Interruption&) {
-    return {ExitCode::Interrupted, "interrupted; nothing was written"};
+    return {ExitCode::Interrupted, kInterrupted};
   } catch (const std::invalid_argument& e) {
     return {ExitCode::Usage, e.what()};
   } catch (const std::runtime_error& e) {

@@ -8,6 +8,9 @@
 
 namespace odobench {
 
+// What an Interruption says; a signal handler writes it, too.
+inline constexpr const char* kInterrupted = "interrupted; nothing was written";
+
 struct Ending {
   ExitCode code;
   std::string message;  // one line

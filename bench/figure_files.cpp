@@ -2,17 +2,20 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "base/files.hpp"
+#include "bench/interrupt.hpp"
 #include "reports/web_assets.hpp"
 
 extern char** environ;  // NOLINT: POSIX has no header for it
@@ -50,8 +53,8 @@ class PrivateFolder {
 };
 
 // Runs words[0], found in PATH, without a shell and with nothing to read; what it writes goes to `log`. Its exit code, 127
-// when there is no such program, 128 + signal when one ended it.
-int run(std::vector<std::string> words, const std::string& log) {
+// when there is no such program, 128 + signal when one ended it. Ended early when `stop` is asked for: Interruption.
+int run(std::vector<std::string> words, const std::string& log, const Stop& stop) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -67,8 +70,16 @@ int run(std::vector<std::string> words, const std::string& log) {
   if (failure != 0)
     throw std::runtime_error(fmt::format("cannot start {}: {}", words[0], std::strerror(failure)));
   int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw std::runtime_error(fmt::format("lost {}: {}", words[0], std::strerror(errno)));
+  for (pid_t ended = 0; ended == 0;) {
+    ended = waitpid(child, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR)
+      throw std::runtime_error(fmt::format("lost {}: {}", words[0], std::strerror(errno)));
+    if (ended > 0) break;
+    ended = 0;
+    if (stop.requested()) ::kill(child, SIGKILL);  // it writes into our private folder only
+    ::poll(nullptr, 0, 20);
+  }
+  stop.check();
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
@@ -89,6 +100,7 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
                     "npm, configure "
                     "and build again",
                     why_no_charts()));
+  InterruptGuard::remember();
   const PrivateFolder work;
   for (int k = 0; k < kChartLibraryFiles; ++k) work.write(chart_library(k).name, chart_library(k).text);
   work.write("theme.js", web_file("theme.js"));
@@ -97,7 +109,7 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
   const std::string log = work / "log";
   const fs::path drawn = work / "drawn";
   fs::create_directory(drawn);
-  const int code = run({"node", script, drawn.string(), list}, log);
+  const int code = run({"node", script, drawn.string(), list}, log, InterruptGuard::stop());
   if (code == 127) throw std::runtime_error("figures as SVG files need node: install nodejs (18 or newer)");
   if (code != 0) {
     const std::string said = read_file(log);

@@ -25,7 +25,7 @@ constexpr const char* kWindowsExamples = R"(Examples:
 
 void add_positive(CLI::App& app, const std::string& name, const char* unit, double& field, const char* help) {
   add_value(app, name, unit, fmt::format("{} [{:.9g}]", help, field),
-            [&field, name](const std::string& text) { field = finite_number(name, text, true); });
+            [&field, name](const std::string& text) { field = finite_number(name, text, true, 1e6); });
 }
 
 void add_constants(CLI::App& app, FilterOptions& o) {
@@ -35,11 +35,12 @@ void add_constants(CLI::App& app, FilterOptions& o) {
               c.samples = static_cast<int>(whole_number("--samples", text, 3, 1000));
             });
   add_value(app, "--dt", "S", "sampling period [the first step of time_s]",
-            [&o](const std::string& text) { o.dt = finite_number("--dt", text, true); });
-  add_value(
-      app, "--time-tolerance", "X",
-      fmt::format("of a time step against the sampling period, relative [{:g}]", o.time_tolerance),
-      [&o](const std::string& text) { o.time_tolerance = finite_number("--time-tolerance", text, true); });
+            [&o](const std::string& text) { o.dt = finite_number("--dt", text, true, 3600); });
+  add_value(app, "--time-tolerance", "X",
+            fmt::format("of a time step against the sampling period, relative [{:g}]", o.time_tolerance),
+            [&o](const std::string& text) {
+              o.time_tolerance = finite_number("--time-tolerance", text, true, 1e3);
+            });
   add_positive(app, "--sigma-encoder", "M", c.sigma_encoder, "deviation of a wheel displacement");
   add_positive(app, "--sigma-acceleration", "M/S^2", c.sigma_acceleration, "deviation of an acceleration");
   add_positive(app, "--sigma-rotation", "DEG", c.sigma_rotation, "deviation of a rotation per step");
@@ -50,7 +51,7 @@ void add_constants(CLI::App& app, FilterOptions& o) {
   add_value(
       app, "--step-rotation", "DEG/S^2",
       "size of an angular acceleration [0.490189596, which is 0.0085554224 rad/s^2]",
-      [&o](const std::string& text) { o.step_rotation = finite_number("--step-rotation", text, true); });
+      [&o](const std::string& text) { o.step_rotation = finite_number("--step-rotation", text, true, 1e6); });
 }
 
 // Where the thesis' program departs from its model.
@@ -126,7 +127,7 @@ void add_windows_options(CLI::App& app, WindowsOptions& o) {
       ->allow_extra_args(false);
   add_value(app, "--repeat", "N", "runs of every solver that draws random numbers [1]",
             [&o](const std::string& text) {
-              o.repeat = static_cast<int>(whole_number("--repeat", text, 1, 1000000));
+              o.repeat = static_cast<int>(whole_number("--repeat", text, 1, 100000));
             });
   add_value(app, "--seed", "N", "base of all seeds [1]",
             [&o](const std::string& text) { o.seed = seed_number("--seed", text); });

@@ -222,16 +222,15 @@ ExitCode filter_command(const FilterOptions& options) {
   // Before the data are read, which may take long or come but once.
   make_filter_method(options.solver, ProfileForm(setup.constants), options.budget, options.seed, kernel,
                      InterruptGuard::flag());
-  const InterruptGuard guard;
   const std::string begin_utc = utc_now();
   const Clock::time_point begin = Clock::now();
   InputRows rows(options, setup, InterruptGuard::flag());
-  if (rows.interrupted()) throw Interruption();
   if (options.theta && !rows.data().thesis_layout())
     throw std::invalid_argument(fmt::format(
         "--theta={}: {} names its rotation column with a unit; the option is for the thesis' layout",
         *options.theta, options.data));
   setup.constants.dt = rows.data().dt();
+  InterruptGuard::remember();
   FilterRun run(options, setup, kernel, rows.data(), InterruptGuard::flag());
   {
     CountLine progress(!options.quiet, "windows");

@@ -10,6 +10,7 @@
 
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/run_tracks.hpp"
@@ -218,6 +219,7 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
 std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
                                                    std::span<const Recording> recordings, std::uint64_t seed,
                                                    int threads) {
+  require_measurements(file, recordings);
   std::vector<std::vector<SensorStream>> streams(recordings.size());
   tbb::task_arena arena(thread_count(threads));
   arena.execute([&] {
@@ -244,6 +246,7 @@ std::vector<std::string> sensor_notes(const Table& table) {
 
 void save_fusion(const FuseOptions& options, const std::vector<RunRecord>& records, const TrackSet& tracks,
                  const std::vector<Table>& tables) {
+  InterruptGuard::remember();
   RecordFile file(options.out, options.overwrite);
   for (const RunRecord& record : records) file.append(record);
   save_tracks(tracks, options.out);

@@ -18,7 +18,8 @@ Verb add_discretise(CLI::App& app, DiscretiseOptions& o) {
       ->required()
       ->type_name("FILE");
   verb->add_option_function<std::string>(
-          "--period", [&o](const std::string& text) { o.period = finite_number("--period", text, true); },
+          "--period",
+          [&o](const std::string& text) { o.period = finite_number("--period", text, true, 1e6); },
           "time step, seconds")
       ->required()
       ->type_name("T");

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "base/stop.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/table_output.hpp"
@@ -20,8 +19,11 @@ namespace odobench {
 namespace {
 
 void save(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json) {
-  const std::vector<std::filesystem::path> files =
-      save_dataset(dataset, set, false, existing_files(overwrite));
+  InterruptGuard::remember();
+  FileTransaction transaction(existing_files(overwrite));
+  add_dataset(dataset, set, transaction, false, InterruptGuard::stop());
+  const std::vector<std::filesystem::path> files = transaction.targets();
+  transaction.commit();
   std::size_t samples = 0;
   for (const Recording& r : dataset.recordings) samples += r.size();
   note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
@@ -38,16 +40,13 @@ ExitCode import_command(const ImportOptions& options) {
   }
   require_writable(options.out, existing_files(options.overwrite));
   const bool draw = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  const InterruptGuard guard;
   const auto progress = [draw](int done, int total) {
-    if (InterruptGuard::flag().load()) throw Interruption();
     if (draw)
       std::fputs(fmt::format("\r\x1b[K{}", done < total ? fmt::format("[{}/{}] recordings", done, total) : "")
                      .c_str(),
                  stderr);
   };
   const Dataset dataset = import_vitko2024(options.from, progress, 0, options.drop_lost);
-  if (InterruptGuard::flag().load()) throw Interruption();
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
   save(dataset, options.out, options.overwrite, options.json);

@@ -43,11 +43,14 @@ std::uint64_t seed_number(const std::string& option, const std::string& text) {
   return value;
 }
 
-double finite_number(const std::string& option, const std::string& text, bool positive) {
+double finite_number(const std::string& option, const std::string& text, bool positive, double most) {
   double value = 0;
   if (!parse_all(text, value) || !std::isfinite(value) || (positive && !(value > 0)))
     throw std::invalid_argument(
         fmt::format("{}={}: expected a finite number{}", option, text, positive ? " > 0" : ""));
+  if (std::abs(value) > most)
+    throw std::invalid_argument(
+        fmt::format("{}={}: expected at most {:g}{}", option, text, most, positive ? "" : " in size"));
   return value;
 }
 

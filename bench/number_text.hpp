@@ -16,6 +16,7 @@ std::int64_t whole_number(const std::string& option, const std::string& text, st
 std::uint64_t seed_number(const std::string& option, const std::string& text);
 
 // A finite number, > 0 when `positive`. Throws std::invalid_argument.
-double finite_number(const std::string& option, const std::string& text, bool positive);
+double finite_number(const std::string& option, const std::string& text, bool positive,
+                     double most = std::numeric_limits<double>::infinity());
 
 }  // namespace odobench

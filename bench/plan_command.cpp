@@ -7,11 +7,13 @@
 #include <stdexcept>
 
 #include "base/parallel.hpp"
+#include "bench/context.hpp"
 #include "bench/option_values.hpp"
 #include "bench/problem_factory.hpp"
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
+#include "bench/work_size.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/drive_planning.hpp"
 #include "solvers/options.hpp"
@@ -221,6 +223,21 @@ Table proposals(const std::vector<DriveInformation>& drives, const Selection& se
                         candidates, wanted);
 }
 
+// The replicas of a drive are in memory together, of as many drives as there are threads, without the logs they are made of.
+constexpr double kRecordingShare = 0.25;
+
+void require_and_announce(simulate::RecordingScenario s, const PlanOptions& o) {
+  s.repetitions = s.exact ? 1 : o.replicas;
+  double longest = 0;
+  for (const simulate::Drive& drive : s.drives) longest = std::max(longest, simulate::most_samples(s, drive));
+  const double at_once = std::min<double>(thread_count(o.threads), static_cast<double>(s.drives.size()));
+  const WorkSize size{
+      fmt::format("--robot={} --replicas={}: {} drives", o.robot, s.repetitions, s.drives.size()),
+      kRecordingShare * at_once * s.repetitions * longest, simulate::most_samples(s)};
+  require_size(size);
+  announce(size, false);
+}
+
 }  // namespace
 
 ExitCode plan_command(const PlanOptions& o) {
@@ -232,6 +249,7 @@ ExitCode plan_command(const PlanOptions& o) {
   checked.drives = selection.drives;
   checked.slip.gains.clear();
   simulate::validate(checked, "--drives");
+  require_and_announce(checked, o);
   const std::vector<ParameterInfo> parameters = robot_parameters(scenario.robot);
   const std::vector<DriveInformation> drives = informations(scenario, selection, o, kernel);
   const PlanAnalysis analysis = analyse_drives(drives, selection.counts, parameters, o.wanted);

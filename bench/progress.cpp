@@ -16,8 +16,8 @@ int terminal_width(int descriptor, int otherwise) {
   return size.ws_col;
 }
 
-ProgressLine::ProgressLine(bool wanted, std::vector<std::string> labels)
-    : active_(wanted && ::isatty(STDERR_FILENO) == 1), labels_(std::move(labels)) {}
+ProgressLine::ProgressLine(bool wanted, std::size_t cells, std::function<std::string(std::size_t)> label)
+    : active_(wanted && ::isatty(STDERR_FILENO) == 1), cells_(cells), label_(std::move(label)) {}
 
 ProgressLine::~ProgressLine() {
   clear();
@@ -59,9 +59,9 @@ void ProgressLine::draw(bool now) {
 }
 
 std::string ProgressLine::line(std::size_t width) const {
-  std::string text = fmt::format("[{}/{}] {:.1f} s", done_, labels_.size(), last_);
+  std::string text = fmt::format("[{}/{}] {:.1f} s", done_, cells_, last_);
   for (const auto& [cell, progress] : running_) {
-    std::string part = "  " + labels_[cell];
+    std::string part = "  " + label_(cell);
     if (std::isfinite(progress.best_cost))
       part += fmt::format(" J {:.8g}, {} evaluations", progress.best_cost, progress.evaluations);
     if (text.size() + part.size() > width) break;

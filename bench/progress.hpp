@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -15,7 +16,7 @@ namespace odobench {
 class ProgressLine {
  public:
   // Draws on standard error when that is a terminal and `wanted`; else every member does nothing.
-  ProgressLine(bool wanted, std::vector<std::string> labels);
+  ProgressLine(bool wanted, std::size_t cells, std::function<std::string(std::size_t)> label);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -31,7 +32,8 @@ class ProgressLine {
   std::string line(std::size_t width) const;
 
   const bool active_;
-  const std::vector<std::string> labels_;
+  const std::size_t cells_;
+  const std::function<std::string(std::size_t)> label_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   double last_ = -1;

@@ -13,6 +13,7 @@
 #include "base/files.hpp"
 #include "bench/check_command.hpp"
 #include "bench/figure_files.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
@@ -84,9 +85,13 @@ ExitCode report_command(const ReportOptions& options) {
   if (options.out == "-" && format == Format::Json)
     throw std::invalid_argument("--out=-: standard output takes the page, not JSON as well");
   const Document document = make_report(report_input(options, records));
-  std::vector<fs::path> written;
+  std::vector<fs::path> written, drawn;
+  // First, since it can still be interrupted.
+  if (!options.figures.empty()) drawn = write_figures(document, options.figures, existing);
   if (!options.out.empty()) {
-    write_result(options.out, render_html(document), existing);
+    const std::string page = render_html(document);
+    InterruptGuard::remember();
+    write_result(options.out, page, existing);
     if (options.out != "-") written.emplace_back(options.out);
     note(has_chart_library()
              ? fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
@@ -94,8 +99,7 @@ ExitCode report_command(const ReportOptions& options) {
              : fmt::format("{}: tables without charts, since {}", options.out, why_no_charts()));
   }
   if (!options.figures.empty()) {
-    for (fs::path& file : write_figures(document, options.figures, existing))
-      written.push_back(std::move(file));
+    written.insert(written.end(), drawn.begin(), drawn.end());
     note(fmt::format("{}: {} figures", options.figures, figures(document).size()));
   }
   if (format == Format::Json) print_tables({written_table(written)}, format);
@@ -111,6 +115,7 @@ ExitCode export_command(const ExportOptions& options) {
         options.run));
   const fs::path out = options.out;
   refuse_existing_folder("--out", options.out, options.overwrite);
+  InterruptGuard::remember();
   FileTransaction transaction(existing_files(options.overwrite));
   std::vector<fs::path> written;
   std::set<std::string> taken;
@@ -118,6 +123,7 @@ ExitCode export_command(const ExportOptions& options) {
     const std::string folder = folder_name(label, taken);
     require_own_folder(out / folder);
     for (const TrackRecording& r : set->recordings) {
+      InterruptGuard::stop().check();
       written.push_back(out / folder / (vega::slug(r.id) + ".tum"));
       transaction.add(written.back(), tum_text(*set, r, pose));
     }

@@ -58,7 +58,7 @@ void add_run_options(CLI::App& app, RunOptions& options, std::string& config) {
   });
   add_value(app, "--repeat", "N", "runs of every solver, each with a seed of its own [1]",
             [&options](const std::string& text) {
-              options.repeat = static_cast<int>(whole_number("--repeat", text, 1, 1000000));
+              options.repeat = static_cast<int>(whole_number("--repeat", text, 1, 100000));
             });
   add_value(app, "--seed", "N", "base of all seeds [1]",
             [&options](const std::string& text) { options.seed = seed_number("--seed", text); });

@@ -27,9 +27,8 @@ namespace {
 // Turns finished runs into records, on disc at once and in memory in the order of the cells.
 class Recorder final : public CellWatcher {
  public:
-  Recorder(const std::vector<LoadedProblem>& loaded, const std::vector<RunCell>& cells,
-           std::uint64_t base_seed, const Budget& budget, const RunContext& context, RecordFile* file,
-           ProgressLine& progress)
+  Recorder(const std::vector<LoadedProblem>& loaded, const CellList& cells, std::uint64_t base_seed,
+           const Budget& budget, const RunContext& context, RecordFile* file, ProgressLine& progress)
       : loaded_(loaded),
         cells_(cells),
         base_seed_(base_seed),
@@ -44,11 +43,12 @@ class Recorder final : public CellWatcher {
     progress_.progressed(cell, progress);
   }
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    RunRecord record = run_record(loaded_[cells_[cell].problem], cells_[cell], base_seed_, budget_, result,
-                                  context_, time_utc);
+    const RunCell what = cells_[cell];
+    auto record = std::make_unique<RunRecord>(
+        run_record(loaded_[what.problem], what, base_seed_, budget_, result, context_, time_utc));
     {
       const std::lock_guard lock(mutex_);
-      if (file_ != nullptr) file_->append(record);
+      if (file_ != nullptr) file_->append(*record);
       in_order_ = in_order_ && cell == finished_;
       ++finished_;
       records_[cell] = std::move(record);
@@ -56,25 +56,26 @@ class Recorder final : public CellWatcher {
     progress_.finished(cell);
   }
 
-  // Of the cells that ran, in their order.
-  std::vector<RunRecord> records() const {
-    std::vector<RunRecord> list;
-    for (const auto& record : records_)
-      if (record) list.push_back(*record);
-    return list;
+  // Of the cells that ran, in their order, moved behind `list`.
+  void move_to(std::vector<RunRecord>& list) {
+    list.reserve(list.size() + finished_);
+    for (std::unique_ptr<RunRecord>& record : records_) {
+      if (record) list.push_back(std::move(*record));
+      record.reset();
+    }
   }
   bool in_order() const { return in_order_; }
 
  private:
   const std::vector<LoadedProblem>& loaded_;
-  const std::vector<RunCell>& cells_;
+  const CellList& cells_;
   const std::uint64_t base_seed_;
   const Budget& budget_;
   const RunContext& context_;
   RecordFile* file_;
   ProgressLine& progress_;
   std::mutex mutex_;
-  std::vector<std::optional<RunRecord>> records_;
+  std::vector<std::unique_ptr<RunRecord>> records_;
   std::size_t finished_ = 0;
   bool in_order_ = true;
 };
@@ -116,27 +117,17 @@ std::vector<LoadedProblem> load_problems(const RunOptions& options, InstructionS
 }
 
 // The cells of every problem, problem by problem. Remarks are the same for all.
-std::vector<RunCell> plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded,
-                              std::vector<std::string>& notes) {
-  std::vector<RunCell> cells;
+CellList plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded, std::vector<std::string>& notes) {
+  CellList cells;
   std::vector<std::string> repeated;
   for (std::size_t k = 0; k < loaded.size(); ++k) {
     plan.problem = loaded[k].name();
     plan.dataset = loaded[k].dataset_name();
-    for (RunCell& cell : plan_cells(plan, k == 0 ? notes : repeated)) {
-      cell.problem = k;
-      cells.push_back(std::move(cell));
-    }
+    cells.add(plan, k, k == 0 ? notes : repeated);
   }
   return cells;
 }
 
-std::vector<std::string> progress_labels(const std::vector<RunCell>& cells,
-                                         const std::vector<LoadedProblem>& loaded) {
-  std::vector<std::string> labels;
-  for (const RunCell& cell : cells)
-    labels.push_back(loaded.size() == 1 ? cell.label() : loaded[cell.problem].name() + " " + cell.label());
-  return labels;
 }
 
 ExitCode outcome(const RunOptions& options, const std::vector<RunRecord>& records, std::size_t cells,
@@ -168,19 +159,14 @@ ExitCode run_command(const RunOptions& options) {
   CellPlan plan = make_plan(options, notes);
   const InstructionSet kernel = kernel_in_force(options.kernel);
   const std::vector<LoadedProblem> loaded = load_problems(options, kernel, notes);
-  const std::vector<RunCell> cells = plan_all(plan, loaded, notes);
+  const CellList cells = plan_all(plan, loaded, notes);
 
   const int threads = thread_count(options.threads);
   const RunContext context = run_context(threads, kernel);
-  std::unique_ptr<RecordFile> file;
-  if (!options.out.empty()) {
-    require_no_records(options.out, options.overwrite);
-    file = std::make_unique<RecordFile>(options.out, options.overwrite);
-  }
+  if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
 
-  const InterruptGuard guard;
   std::vector<Table> tables;
   if (options.check_derivatives) {
     const DerivativeTable checked = check_derivatives(loaded, options.seed, options.quiet);
@@ -195,17 +181,24 @@ ExitCode run_command(const RunOptions& options) {
   std::vector<RunRecord> records;
   for (const LoadedProblem& one : loaded)
     if (one.calibration) records.push_back(evaluation_record(one, "nominal", one.problem.start(), context));
-  if (file)
+  InterruptGuard::remember();
+  std::unique_ptr<RecordFile> file;
+  if (!options.out.empty()) {
+    file = std::make_unique<RecordFile>(options.out, options.overwrite);
     for (const RunRecord& r : records) file->append(r);
+  }
 
-  ProgressLine progress(!options.quiet, progress_labels(cells, loaded));
+  ProgressLine progress(!options.quiet, cells.size(), [&](std::size_t i) {
+    const RunCell cell = cells[i];
+    return loaded.size() == 1 ? cell.label() : loaded[cell.problem].name() + " " + cell.label();
+  });
   Recorder recorder(loaded, cells, plan.base_seed, options.budget, context, file.get(), progress);
   std::vector<Problem> problems;
   for (const LoadedProblem& one : loaded) problems.push_back(one.problem);
   run_cells(problems, cells, options.budget, threads, InterruptGuard::flag(), recorder);
   progress.clear();
   const bool interrupted = InterruptGuard::flag().load();
-  for (RunRecord& r : recorder.records()) records.push_back(std::move(r));
+  recorder.move_to(records);
 
   for (Table& table : comparison_tables(records, notes_of_best(records))) tables.push_back(std::move(table));
   if (file) {

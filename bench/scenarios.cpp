@@ -138,9 +138,7 @@ DynamicsScenario read_dynamics(const JsonNode& root, const simulate::ScenarioHea
   try {
     s.setup.validate();
     s.noise.validate();
-    if (!(s.output_step_s > 0))
-      throw std::invalid_argument(
-          fmt::format("output_step_s is {}, expected a positive number", s.output_step_s));
+    dynamics::check_size(s.setup, s.output_step_s);
   } catch (const std::invalid_argument& error) {  // what is wrong with a file is no usage error
     throw DataError(fmt::format("{}: {}", root.file(), error.what()));
   }

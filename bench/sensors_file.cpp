@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <stdexcept>
 
@@ -11,8 +12,24 @@
 namespace odobench {
 namespace {
 
-double number_or(const JsonNode& node, const std::string& key, double otherwise) {
-  return node.has(key) ? node.at(key).number() : otherwise;
+// What no sensor of a robot has is a typing error. Zero and signs are judged where the value is used.
+struct Limits {
+  double least, most;
+  const char* unit;
+};
+constexpr Limits kRate{1e-9, 1e5, " Hz"}, kTime{1e-9, 3600, " s"}, kSigma{1e-9, 1e6, ""},
+    kShare{1e-12, 1, ""}, kError{1e-15, 1e6, ""}, kScatter{1e-6, 1e3, ""};
+
+double number(const JsonNode& node, const Limits& limits) {
+  const double value = node.number();
+  if (std::abs(value) > limits.most || (value != 0 && std::abs(value) < limits.least))
+    node.fail(fmt::format("{}", value),
+              fmt::format("0 or {:g} up to {:g}{}", limits.least, limits.most, limits.unit));
+  return value;
+}
+
+double number_or(const JsonNode& node, const std::string& key, const Limits& limits, double otherwise) {
+  return node.has(key) ? number(node.at(key), limits) : otherwise;
 }
 
 SensorKind read_kind(const JsonNode& node) {
@@ -28,24 +45,25 @@ void read_gyro(const JsonNode& node, SyntheticSensor& s) {
   const JsonNode errors = node.at("errors"), filter = node.at("filter");
   errors.allow_only({"bias", "bias_walk", "noise"});
   filter.allow_only({"sigma_yaw_rate"});
-  s.gyro = {number_or(errors, "bias", 0), number_or(errors, "bias_walk", 0), number_or(errors, "noise", 0)};
-  s.stream.sigma_rate = filter.at("sigma_yaw_rate").number();
+  s.gyro = {number_or(errors, "bias", kError, 0), number_or(errors, "bias_walk", kError, 0),
+            number_or(errors, "noise", kError, 0)};
+  s.stream.sigma_rate = number(filter.at("sigma_yaw_rate"), kSigma);
 }
 
 void read_camera(const JsonNode& node, SyntheticSensor& s) {
   const JsonNode errors = node.at("errors"), filter = node.at("filter");
   errors.allow_only(
       {"scale", "scale_mean", "position_walk", "heading_walk", "position_noise", "heading_noise"});
-  s.camera = {number_or(errors, "scale", 0),          number_or(errors, "scale_mean", 0),
-              number_or(errors, "position_walk", 0),  number_or(errors, "heading_walk", 0),
-              number_or(errors, "position_noise", 0), number_or(errors, "heading_noise", 0)};
-  s.stream.sigma_heading = filter.at("sigma_heading").number();
+  s.camera = {number_or(errors, "scale", kError, 0),          number_or(errors, "scale_mean", kError, 0),
+              number_or(errors, "position_walk", kError, 0),  number_or(errors, "heading_walk", kError, 0),
+              number_or(errors, "position_noise", kError, 0), number_or(errors, "heading_noise", kError, 0)};
+  s.stream.sigma_heading = number(filter.at("sigma_heading"), kSigma);
   if (s.stream.kind == SensorKind::Heading) {
     filter.allow_only({"sigma_heading"});
     return;
   }
   filter.allow_only({"sigma_position", "sigma_heading"});
-  s.stream.sigma_position = filter.at("sigma_position").number();
+  s.stream.sigma_position = number(filter.at("sigma_position"), kSigma);
 }
 
 SyntheticSensor read_sensor(const JsonNode& node) {
@@ -53,10 +71,10 @@ SyntheticSensor read_sensor(const JsonNode& node) {
   SyntheticSensor s;
   s.stream.name = node.at("name").text();
   s.stream.kind = read_kind(node.at("type"));
-  s.timing.rate_hz = node.at("rate_hz").number();
-  s.timing.delay_s = number_or(node, "delay_s", 0);
-  s.timing.missing = number_or(node, "missing", 0);
-  s.timing.smooth_s = number_or(node, "smooth_s", StreamTiming().smooth_s);
+  s.timing.rate_hz = number(node.at("rate_hz"), kRate);
+  s.timing.delay_s = number_or(node, "delay_s", kTime, 0);
+  s.timing.missing = number_or(node, "missing", kShare, 0);
+  s.timing.smooth_s = number_or(node, "smooth_s", kTime, StreamTiming().smooth_s);
   if (s.stream.kind == SensorKind::YawRate) {
     read_gyro(node, s);
     s.stream.hold_s = 1 / s.timing.rate_hz;
@@ -71,7 +89,7 @@ std::optional<WalkingState> read_walk(const JsonNode& root, const std::string& k
   if (!root.has(key)) return std::nullopt;
   const JsonNode node = root.at(key);
   node.allow_only({"initial", "walk"});
-  return WalkingState{node.at("initial").number(), node.at("walk").number()};
+  return WalkingState{number(node.at("initial"), kError), number(node.at("walk"), kError)};
 }
 
 // Both generators on a short made-up drive: they refuse what they refuse before any recording is touched.
@@ -104,24 +122,24 @@ SensorsFile read_sensors(const std::filesystem::path& path) {
   FusionOptions& o = file.options;
   const JsonNode wheels = root.at("wheels");
   wheels.allow_only({"sigma_velocity", "sigma_yaw_rate"});
-  o.sigma_velocity = wheels.at("sigma_velocity").number();
-  o.sigma_yaw_rate = wheels.at("sigma_yaw_rate").number();
+  o.sigma_velocity = number(wheels.at("sigma_velocity"), kSigma);
+  o.sigma_yaw_rate = number(wheels.at("sigma_yaw_rate"), kSigma);
   if (root.has("start")) {
     const JsonNode start = root.at("start");
     start.allow_only({"sigma_position", "sigma_heading"});
-    o.initial_position = start.at("sigma_position").number();
-    o.initial_heading = start.at("sigma_heading").number();
+    o.initial_position = number(start.at("sigma_position"), kSigma);
+    o.initial_heading = number(start.at("sigma_heading"), kSigma);
   }
   o.gyro_bias = read_walk(root, "gyro_bias");
   o.odometry_scale = read_walk(root, "odometry_scale");
-  o.gate_probability = number_or(root, "gate_probability", 0);
-  o.max_delay_s = number_or(root, "max_delay_s", o.max_delay_s);
+  o.gate_probability = number_or(root, "gate_probability", kShare, 0);
+  o.max_delay_s = number_or(root, "max_delay_s", kTime, o.max_delay_s);
   if (root.has("unscented")) {
     const JsonNode node = root.at("unscented");
     node.allow_only({"alpha", "beta", "kappa"});
     UnscentedOptions& u = o.filter.unscented;
-    u = {number_or(node, "alpha", u.alpha), number_or(node, "beta", u.beta),
-         number_or(node, "kappa", u.kappa)};
+    u = {number_or(node, "alpha", kScatter, u.alpha), number_or(node, "beta", kScatter, u.beta),
+         number_or(node, "kappa", kScatter, u.kappa)};
   }
   for (const JsonNode& node : root.at("sensors").elements()) file.sensors.push_back(read_sensor(node));
   if (file.sensors.empty()) root.at("sensors").fail("an empty array", "at least one sensor");
@@ -134,6 +152,18 @@ SensorsFile read_sensors(const std::filesystem::path& path) {
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }
   return file;
+}
+
+void require_measurements(const SensorsFile& file, std::span<const Recording> recordings) {
+  double seconds = 0;
+  for (const Recording& r : recordings)
+    seconds += (static_cast<double>(r.time_us.back()) - static_cast<double>(r.time_us.front())) * 1e-6;
+  double count = 0;
+  for (const SyntheticSensor& s : file.sensors) count += seconds * s.timing.rate_hz;
+  if (count > kMostMeasurements)
+    throw DataError(fmt::format(
+        "{}: at these rates the {:.6g} s of the recordings make {:.3g} measurements, expected at most {:.3g}",
+        file.name, seconds, count, kMostMeasurements));
 }
 
 std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,13 @@ struct SensorsFile {
 };
 
 // Throws DataError naming file, path, what was found and what was expected: unknown keys, an unknown type of sensor, values
-// that validate() or the generators refuse.
+// that validate() or the generators refuse, values beyond any sensor of a robot (docs/fusion.md).
 SensorsFile read_sensors(const std::filesystem::path& file);
+
+// Of all sensors and recordings together: 60 bytes each, and ten microseconds to make and to filter.
+inline constexpr double kMostMeasurements = 2e7;
+// Throws DataError when the rates over the recordings' durations give more.
+void require_measurements(const SensorsFile& file, std::span<const Recording> recordings);
 
 // The streams of a recording; same seed, file and recording id: same bits.
 std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,

@@ -9,9 +9,11 @@
 #include "base/files.hpp"
 #include "base/parallel.hpp"
 #include "base/sha256.hpp"
+#include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
+#include "bench/work_size.hpp"
 #include "bench/written.hpp"
 #include "datasets/simulate/raw_csv.hpp"
 #include "datasets/simulate/simulated_set.hpp"
@@ -43,14 +45,15 @@ void add_raw_files(const simulate::SimulatedSet& set, int threads, const fs::pat
     std::string capture, wheels, sums;
   };
   std::vector<Pair> pairs(set.drives.size());
-  parallel_for(pairs.size(), threads, [&](std::size_t i) {
+  const auto make = [&](std::size_t i) {
     const int number = static_cast<int>(i) + 1;
     Pair& p = pairs[i];
     p.capture = simulate::capture_csv(set.drives[i].logs, number);
     p.wheels = simulate::wheels_csv(set.drives[i].logs, number);
     p.sums =
         fmt::format("{}  abs_{}.csv\n{}  odom_{}.csv\n", sha256(p.capture), number, sha256(p.wheels), number);
-  });
+  };
+  parallel_for(pairs.size(), threads, make, InterruptGuard::stop());
   std::string sums;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     files.add(out / fmt::format("abs_{}.csv", i + 1), pairs[i].capture);
@@ -69,14 +72,23 @@ void write_recordings(const simulate::RecordingScenario& s, const SimulateOption
   const Existing existing = existing_files(o.overwrite);
   for (const fs::path& file : {o.raw ? out / "abs_1.csv" : set_json, out / "truth.json", out / "truth.csv"})
     require_writable(file, existing);
+  const double samples_at_most = simulate::most_samples(s);
+  const WorkSize size{
+      fmt::format("--scenario={}: {} drives {} times", o.scenario, s.drives.size(), s.repetitions),
+      samples_at_most, samples_at_most};
+  require_size(size);
+  announce(size, o.quiet);
   const simulate::SimulatedSet set = simulate::simulate_set(s, o.seed, o.threads);
+  const std::string truth_json = simulate::truth_json(s, o.seed, set),
+                    truth_csv = simulate::truth_csv(s, set);
+  InterruptGuard::remember();
   FileTransaction files(existing);
-  files.add(out / "truth.json", simulate::truth_json(s, o.seed, set));
-  files.add(out / "truth.csv", simulate::truth_csv(s, set));
+  files.add(out / "truth.json", truth_json);
+  files.add(out / "truth.csv", truth_csv);
   if (o.raw)
     add_raw_files(set, o.threads, out, files);
   else
-    add_dataset(set.dataset, set_json, files);
+    add_dataset(set.dataset, set_json, files, false, InterruptGuard::stop());
   const std::vector<fs::path> written = files.targets();
   files.commit();
   std::size_t samples = 0;
@@ -96,14 +108,23 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
     s.setup.model = dynamics::ModelOptions::as_published();
     s.frame = dynamics::AccelerationFrame::World;
   }
+  const double end = s.setup.segments.back().until_s, count = end / s.output_step_s;
+  const double steps = s.setup.integration.method == dynamics::Method::RungeKutta4
+                           ? end / s.setup.integration.step_s
+                           : 0;  // adaptive ones are not known beforehand
+  announce(fmt::format("--scenario={}: {:.2g} samples, {:.2g} fixed steps", o.scenario, count, steps),
+           count * kSecondsPerMotorSample + steps * kSecondsPerStep, o.quiet);
   const std::vector<dynamics::Sample> samples = dynamics::simulate_drive(s.setup, s.output_step_s);
   Random random(derive_seed(o.seed, {"dynamics", s.name}));
   const dynamics::SensorRun run =
       dynamics::sense(s.setup.robot, samples, s.frame, s.noise, [&random] { return random.normal(); });
+  const std::string sensors = dynamics::sensor_csv(run.rows), truth = dynamics::truth_csv(run.truth),
+                    states = dynamics::state_csv(s.setup.robot, samples);
+  InterruptGuard::remember();
   FileTransaction files(existing_files(o.overwrite));
-  files.add(out / "sensors.csv", dynamics::sensor_csv(run.rows));
-  files.add(out / "truth.csv", dynamics::truth_csv(run.truth));
-  files.add(out / "state.csv", dynamics::state_csv(s.setup.robot, samples));
+  files.add(out / "sensors.csv", sensors);
+  files.add(out / "truth.csv", truth);
+  files.add(out / "state.csv", states);
   files.add(out / "robot.json", robot_json(s.setup.robot));
   const std::vector<fs::path> written = files.targets();
   files.commit();

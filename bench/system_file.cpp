@@ -9,13 +9,20 @@
 namespace odobench {
 namespace {
 
+// States, inputs or noises: the exponential of three times as many rows takes a second.
+constexpr std::size_t kMostRows = 200;
+
 Matrix read_matrix(const JsonNode& node) {
   const std::vector<JsonNode> rows = node.elements();
   if (rows.empty()) node.fail("an empty array", "a matrix as an array of rows");
+  if (rows.size() > kMostRows)
+    node.fail(fmt::format("{} rows", rows.size()), fmt::format("at most {}", kMostRows));
   Matrix m;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::vector<double> row = rows[i].numbers();
     if (i == 0) m.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(row.size()));
+    if (row.size() > kMostRows)
+      rows[i].fail(fmt::format("a row of {}", row.size()), fmt::format("at most {}", kMostRows));
     if (static_cast<Eigen::Index>(row.size()) != m.cols() || row.empty())
       rows[i].fail(fmt::format("a row of {}", row.size()),
                    i == 0 ? std::string("at least one number") : fmt::format("{} as in the first", m.cols()));

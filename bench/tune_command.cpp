@@ -116,6 +116,7 @@ void write_sensors(const TuneOptions& options, const FusionOptions& fusion,
     if (s.kind != SensorKind::Heading) filter["sigma_position"] = s.sigma_position;
     filter["sigma_heading"] = s.sigma_heading;
   }
+  InterruptGuard::remember();
   write_file(options.out, root.dump(2) + "\n", existing_files(options.overwrite));
 }
 
@@ -182,12 +183,10 @@ ExitCode tune_command(const TuneOptions& options) {
   };
   std::vector<Setting> settings{{"given", problem.start(), model->cost(problem.start()), 1, "", {}}};
   std::vector<std::string> remarks;
-  const InterruptGuard guard;
   for (const SolverSpec& spec : solvers) {
     SolveOptions solve_options;
     solve_options.budget.max_evaluations = options.max_evaluations;
     solve_options.seed = derive_seed(seed, {"tune", loaded.dataset_name(), spec.text()});
-    solve_options.interrupt = &InterruptGuard::flag();
     const Result result = solve(problem, spec, problem.start(), solve_options);
     if (!result.usable()) {
       warn(fmt::format("{}: {}", spec.text(), result.message));
@@ -204,7 +203,6 @@ ExitCode tune_command(const TuneOptions& options) {
                         to_string(result.termination),
                         {}});
   }
-  if (InterruptGuard::flag().load()) throw Interruption();
   for (Setting& setting : settings) setting.held_out = judged(setting.x);
   if (settings.size() == 1) {
     warn("not one solver gave a result");

@@ -16,6 +16,7 @@
 #include "bench/progress.hpp"
 #include "bench/scenarios.hpp"
 #include "bench/table_output.hpp"
+#include "bench/work_size.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "reports/statistics.hpp"
 #include "solvers/random.hpp"
@@ -217,6 +218,12 @@ ExitCode verify_command(const VerifyOptions& o) {
     std::copy(set.values.begin(), set.values.end(), scenarios.back().control.believed.begin());
     simulate::validate(scenarios.back(), fmt::format("--parameters: set '{}'", set.label));
   }
+  const double tour = simulate::most_samples(scenario);
+  const WorkSize size{fmt::format("--scenario={} --repeat={}: {} sets drive {} drives {} times", o.scenario,
+                                  o.repeat, sets.size(), scenario.drives.size(), scenario.repetitions),
+                      tour, tour * o.repeat * static_cast<double>(sets.size())};
+  require_size(size);
+  announce(size, false);
   Outcomes outcomes(sets.size());
   {
     CountLine progress(true, "tours of all drives", static_cast<std::int64_t>(sets.size()) * o.repeat);

@@ -78,11 +78,17 @@ void add_statistics(const LoadedWindow& w, const Vector& t, RunRecord& record) {
   record.statistics["hamiltonian_relaxed"] = w.relaxed;
 }
 
+CellList plan_cells(const CellPlan& plan, std::vector<std::string>& notes) {
+  CellList cells;
+  cells.add(plan, 0, notes);
+  return cells;
+}
+
 // Records of the cells of one window, on disc at once and in memory in the order of the cells.
 class WindowRecorder final : public CellWatcher {
  public:
   WindowRecorder(const LoadedWindow& window, const std::string& dataset, const std::string& sha256,
-                 const std::vector<RunCell>& cells, std::uint64_t base_seed, const Budget& budget,
+                 const CellList& cells, std::uint64_t base_seed, const Budget& budget,
                  const RunContext& context, RecordFile* file, ProgressLine& progress, std::size_t first)
       : window_(window),
         dataset_(dataset),
@@ -124,7 +130,7 @@ class WindowRecorder final : public CellWatcher {
  private:
   const LoadedWindow& window_;
   const std::string dataset_, sha256_;
-  const std::vector<RunCell>& cells_;
+  const CellList& cells_;
   const std::uint64_t base_seed_;
   const Budget& budget_;
   const RunContext& context_;
@@ -137,15 +143,15 @@ class WindowRecorder final : public CellWatcher {
 
 std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std::vector<std::string>& only) {
   if (only.empty()) return windows;
-  std::vector<std::string> known;
+  std::set<std::string> known;
   for (const EntropyWindow& w : windows) {
-    known.push_back(w.id);
-    if (!w.group.empty()) known.push_back(w.group);
+    known.insert(w.id);
+    if (!w.group.empty()) known.insert(w.group);
   }
   std::set<std::string> wanted;
   for (const std::string& name : comma_items(only)) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      const std::string near = nearest_name(name, known);
+    if (known.count(name) == 0) {
+      const std::string near = nearest_name(name, {known.begin(), known.end()});
       throw std::invalid_argument(fmt::format("--only={}: no window or group of the file{}", name,
                                               near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
     }
@@ -155,15 +161,6 @@ std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std:
   for (EntropyWindow& w : windows)
     if (wanted.count(w.id) != 0 || wanted.count(w.group) != 0) some.push_back(std::move(w));
   return some;
-}
-
-// "lm" for one method, "p003 lm" for a line that shows several windows at once.
-std::vector<std::string> progress_labels(const std::vector<EntropyWindow>& windows,
-                                         const std::vector<RunCell>& cells) {
-  std::vector<std::string> labels;
-  for (const EntropyWindow& w : windows)
-    for (const RunCell& cell : cells) labels.push_back(w.id + " " + cell.label());
-  return labels;
 }
 
 ExitCode outcome(const std::vector<RunRecord>& records, std::size_t planned, bool interrupted,
@@ -201,7 +198,13 @@ ExitCode windows_command(const WindowsOptions& options) {
   const std::string sha256 = sha256_of_file(options.file);
   const int threads = thread_count(options.threads);
   const RunContext context = run_context(threads, kernel_in_force(options.kernel));
-  const std::size_t per_window = plan_cells(plan, notes).size();
+  const CellList of_each = plan_cells(plan, notes);
+  const std::size_t per_window = of_each.size();
+  if (windows.size() > kMostRuns / per_window)
+    throw std::invalid_argument(
+        fmt::format("{} windows with {} runs each; expected at most {} runs, see --only", windows.size(),
+                    per_window, kMostRuns));
+  InterruptGuard::remember();
   std::unique_ptr<RecordFile> file;
   if (!options.out.empty()) {
     require_no_records(options.out, options.overwrite);
@@ -210,15 +213,16 @@ ExitCode windows_command(const WindowsOptions& options) {
   if (!options.quiet)
     for (const std::string& text : notes) note(text);
 
-  const InterruptGuard guard;
   std::vector<std::string> ignored;
-  ProgressLine progress(!options.quiet, progress_labels(windows, plan_cells(plan, ignored)));
+  ProgressLine progress(!options.quiet, windows.size() * per_window, [&](std::size_t i) {
+    return windows[i / per_window].id + " " + of_each[i % per_window].label();
+  });
   std::vector<RunRecord> records;
   for (std::size_t i = 0; i < windows.size() && !InterruptGuard::flag().load(); ++i) {
     const LoadedWindow window = load(windows[i]);
     if (InterruptGuard::flag().load()) break;  // what results are measured against is not known
     plan.dataset = stem + "/" + windows[i].id;
-    const std::vector<RunCell> cells = plan_cells(plan, ignored);
+    const CellList cells = plan_cells(plan, ignored);
     WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, options.budget, context,
                             file.get(), progress, i * per_window);
     run_cells({window.loaded.problem}, cells, options.budget, threads, InterruptGuard::flag(), recorder);

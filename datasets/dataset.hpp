@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/files.hpp"
+#include "base/stop.hpp"
 #include "datasets/recording.hpp"
 
 namespace odobench {
@@ -77,8 +78,9 @@ Dataset load_dataset(const std::filesystem::path& set_json);
 std::vector<std::filesystem::path> save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
                                                 bool inline_recordings = false,
                                                 Existing existing = Existing::Replace);
-// The same files as a part of something larger: added, set.json last, but not committed.
+// The same files as a part of something larger: added, set.json last, but not committed. Throws Interruption when a stop is
+// asked for before the last recording.
 void add_dataset(const Dataset& dataset, const std::filesystem::path& set_json, FileTransaction& files,
-                 bool inline_recordings = false);
+                 bool inline_recordings = false, const Stop& stop = {});
 
 }  // namespace odobench

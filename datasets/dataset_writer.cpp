@@ -108,12 +108,14 @@ std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, b
   return written;
 }
 
-void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& files, bool inline_recordings) {
+void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& files, bool inline_recordings,
+                 const Stop& stop) {
   check(d, set_json.string());
   const std::string folder = set_json.stem().string() + "_recordings";
   if (!inline_recordings) require_own_folder(set_json.parent_path() / folder);
   Json recordings = Json::array();
   for (const Recording& r : d.recordings) {
+    stop.check();
     Json entry = recording_head(r);
     if (inline_recordings) {
       entry["columns"] = inline_columns(r);

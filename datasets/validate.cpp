@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench {
@@ -31,7 +32,7 @@ class Validator {
     for (std::size_t i = 0; i < d_.provenance.files.size(); ++i)
       require(is_sha256(d_.provenance.files[i].sha256), fmt::format("/provenance/files/{}/sha256", i),
               fmt::format("found \"{}\", expected 64 lower-case hexadecimal digits",
-                          d_.provenance.files[i].sha256));
+                          shown(d_.provenance.files[i].sha256)));
   }
 
  private:
@@ -41,7 +42,7 @@ class Validator {
   void require_new(std::set<std::string>& seen, const std::string& name, const std::string& path) const {
     require(!name.empty(), path, "found an empty text, expected a name");
     require(seen.insert(name).second, path,
-            fmt::format("found \"{}\" a second time, expected every name once", name));
+            fmt::format("found \"{}\" a second time, expected every name once", shown(name)));
   }
 
   void check_trajectories() const {
@@ -53,6 +54,8 @@ class Validator {
   void check_recordings() const {
     require(!d_.recordings.empty(), "/recordings", "found none, expected at least one");
     std::set<std::string> ids;
+    std::set<std::string_view> trajectories;
+    for (const Trajectory& t : d_.trajectories) trajectories.insert(t.name);
     std::set<std::pair<std::string, int>> repetitions;
     for (std::size_t i = 0; i < d_.recordings.size(); ++i) {
       const Recording& r = d_.recordings[i];
@@ -64,17 +67,15 @@ class Validator {
       };
       require(std::all_of(r.id.begin(), r.id.end(), plain) && r.id[0] != '.', path + "/id",
               fmt::format("found \"{}\", expected letters, digits, '_', '-' and '.', not beginning with '.'",
-                          r.id));
-      const bool known = std::any_of(d_.trajectories.begin(), d_.trajectories.end(),
-                                     [&](const Trajectory& t) { return t.name == r.trajectory; });
-      require(known, path + "/trajectory",
-              fmt::format("found \"{}\", expected the name of one of the {} trajectories", r.trajectory,
-                          d_.trajectories.size()));
+                          shown(r.id)));
+      require(trajectories.count(r.trajectory) != 0, path + "/trajectory",
+              fmt::format("found \"{}\", expected the name of one of the {} trajectories",
+                          shown(r.trajectory), d_.trajectories.size()));
       require(r.repetition >= 1, path + "/repetition",
               fmt::format("found {}, expected 1 or more", r.repetition));
       require(repetitions.insert({r.trajectory, r.repetition}).second, path + "/repetition",
               fmt::format("found repetition {} of \"{}\" a second time, expected every one once",
-                          r.repetition, r.trajectory));
+                          r.repetition, shown(r.trajectory)));
     }
   }
 
@@ -105,7 +106,7 @@ void validate_robot(const Robot& robot, const std::string& file) {
   require(!robot.name.empty(), "/robot/name", "found an empty text, expected a name");
   const Robot known = robot_4wis4wid();
   require(robot.kinematics == known.kinematics, "/robot/kinematics",
-          fmt::format("found \"{}\", expected \"{}\"", robot.kinematics, known.kinematics));
+          fmt::format("found \"{}\", expected \"{}\"", shown(robot.kinematics), known.kinematics));
   require(robot.parameters.size() == known.parameters.size(), "/robot/parameters",
           fmt::format("found {} parameters, expected {}", robot.parameters.size(), known.parameters.size()));
   for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
@@ -113,9 +114,9 @@ void validate_robot(const Robot& robot, const std::string& file) {
     const std::string path = fmt::format("/robot/parameters/{}", i);
     const RobotParameter& expected = known.parameters[i];
     require(p.name == expected.name, path + "/name",
-            fmt::format("found \"{}\", expected \"{}\"", p.name, expected.name));
+            fmt::format("found \"{}\", expected \"{}\"", shown(p.name), expected.name));
     require(p.unit == expected.unit, path + "/unit",
-            fmt::format("found \"{}\", expected \"{}\"", p.unit, expected.unit));
+            fmt::format("found \"{}\", expected \"{}\"", shown(p.unit), expected.unit));
     require(std::isfinite(p.nominal) && std::isfinite(p.lower) && std::isfinite(p.upper), path,
             fmt::format("found lower {}, nominal {}, upper {} of {}, expected finite numbers", p.lower,
                         p.nominal, p.upper, p.name));

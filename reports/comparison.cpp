@@ -49,11 +49,10 @@ void finish(Comparison& comparison) {
   std::stable_sort(comparison.rows.begin(), comparison.rows.end(),
                    [](const ComparisonRow& a, const ComparisonRow& b) { return rank(a) < rank(b); });
   if (rank(comparison.rows.front()) == 0) comparison.reference = 0;
-  auto& names = comparison.trajectories;
+  std::set<std::string> seen;
   for (const ComparisonRow& row : comparison.rows)
     for (const TrajectoryErrors& trajectory : row.errors)
-      if (std::find(names.begin(), names.end(), trajectory.trajectory) == names.end())
-        names.push_back(trajectory.trajectory);
+      if (seen.insert(trajectory.trajectory).second) comparison.trajectories.push_back(trajectory.trajectory);
 }
 
 void add(Comparison& comparison, const RunRecord& record) {

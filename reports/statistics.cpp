@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <unordered_map>
 
 namespace odobench {
 namespace {
@@ -43,11 +44,12 @@ ErrorStatistics error_statistics_of(const std::vector<double>& repetitions) {
 
 std::vector<TrajectoryErrors> error_statistics(const std::vector<RecordingError>& errors) {
   std::vector<std::string> names;
+  std::unordered_map<std::string, std::size_t> places;
   std::vector<std::array<std::vector<double>, 3>> samples;
   for (const RecordingError& error : errors) {
-    const auto found = std::find(names.begin(), names.end(), error.trajectory);
-    const auto index = static_cast<std::size_t>(found - names.begin());
-    if (found == names.end()) {
+    const auto [place, is_new] = places.emplace(error.trajectory, names.size());
+    const std::size_t index = place->second;
+    if (is_new) {
       names.push_back(error.trajectory);
       samples.emplace_back();
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "solvers/boundary_map.hpp"
@@ -124,16 +125,19 @@ class Restarts {
 }  // namespace
 
 void CmaesOptions::bind(OptionBinder& binder) {
-  binder.integer("population", population,
-                 "samples per generation of the first descent, 0: 4 + 5 ln(parameters)", 0, 1 << 20);
+  binder.automatic("population", population,
+                   "samples per generation of the first descent; auto: 4 + 5 ln(parameters)", 2,
+                   kLargestPopulation);
   binder.number("sigma", sigma, "first standard deviation, half-widths of the box", 1e-12, 10);
   binder.flag("active", active, "negative weights for the worse half of the samples");
   binder.choice("strategy", strategy, "how restarts choose their population", {"ipop", "bipop"});
   binder.integer(
       "restarts", restarts,
-      "most restarts with a doubled population; ends earlier when a restart finds the best point again", 0);
-  binder.integer("generations", generations,
-                 "limit per descent, 0: 100 + 50 (parameters + 3)^2 / sqrt(population)", 0);
+      "most restarts with a doubled population; ends earlier when a restart finds the best point again", 0,
+      1000);
+  binder.automatic("generations", generations,
+                   "limit per descent; auto: 100 + 50 (parameters + 3)^2 / sqrt(population)", 1,
+                   std::numeric_limits<int>::max());
   binder.number("cost_tolerance", cost_tolerance,
                 "a descent ends when recent costs differ by at most this times the cost", 0, 1);
   binder.number("step_tolerance", step_tolerance,
@@ -142,9 +146,7 @@ void CmaesOptions::bind(OptionBinder& binder) {
                 1e-6, 1);
 }
 
-void CmaesOptions::validate() const {
-  if (population == 1) throw std::invalid_argument("solver 'cmaes': option population=1; expected 0 or >= 2");
-}
+void CmaesOptions::validate() const {}
 
 std::string Cmaes::why_not(const Problem&) const {
   return {};

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -203,17 +204,18 @@ class Evolution {
 }  // namespace
 
 void DifferentialEvolutionOptions::bind(OptionBinder& binder) {
-  binder.integer("population", population, "individuals at first; 0: 18 m", 0, 1000000);
-  binder.integer(
+  binder.automatic("population", population, "individuals at first; auto: 18 m", 4, kLargestPopulation);
+  binder.automatic(
       "evaluations", evaluations,
-      "evaluations until the population has shrunk to 4; 0: 2400 m, or the budget where it is less", 0);
+      "evaluations until the population has shrunk to 4; auto: 2400 m, or the budget where it is less", 1,
+      std::numeric_limits<int>::max());
   binder.integer("memory", memory, "places that remember which F and CR succeeded", 1, 1000);
   binder.number("greed", greed, "share of the best that trials are drawn to", 0.0, 1.0);
   binder.number("archive", archive, "size of the archive of replaced parents, parts of the population", 0.0,
-                100.0);
+                10.0);
   binder.number("frame", frame, "share of the crossovers in the frame of the better half", 0.0, 1.0);
   binder.number("cost_tolerance", cost_tolerance,
-                "settled once the costs' range is at most this part of the cost", 0.0);
+                "settled once the costs' range is at most this part of the cost", 0.0, 1.0);
   binder.number("boundary", boundary, "width of the bent zone at the bounds", 1e-6, 1.0);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -110,13 +111,16 @@ void replace(Population& p, const std::vector<Eigen::Index>& places, const Matri
 void GeneticOptions::bind(OptionBinder& binder) {
   binder.choice("variant", variant, "modern: multi-parent, frame-independent; thesis: the Zagreb program",
                 {"modern", "thesis"});
-  binder.integer("population", population, "members, 0: modern 5 per parameter (at least 20), thesis 12", 0,
-                 1 << 20);
-  binder.integer("generations", generations, "limit, 0: modern 20000, thesis 600", 0);
-  binder.integer("parents", parents, "modern: parents of one generation, 0: 2 per parameter (at least 8)", 0,
-                 1 << 20);
-  binder.integer("children", children, "modern: children of one generation, 0: 6 per parameter (at least 12)",
-                 0, 1 << 20);
+  binder.automatic("population", population, "members; auto: modern 5 per parameter (at least 20), thesis 12",
+                   3, kLargestPopulation);
+  binder.automatic("generations", generations, "limit; auto: modern 20000, thesis 600", 1,
+                   std::numeric_limits<int>::max());
+  binder.automatic("parents", parents,
+                   "modern: parents of one generation; auto: 2 per parameter (at least 8)", 2,
+                   kLargestPopulation);
+  binder.automatic("children", children,
+                   "modern: children of one generation; auto: 6 per parameter (at least 12)", 1,
+                   kLargestPopulation);
   binder.number("expansion", expansion, "modern: spread of the first children relative to their parents'",
                 0.1, 10);
   binder.flag("adapt", adapt, "modern: the expansion follows the success of the children (E)");
@@ -136,9 +140,6 @@ void GeneticOptions::bind(OptionBinder& binder) {
 
 void GeneticOptions::validate() const {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument("solver 'ga': " + what); };
-  if (population == 1 || population == 2)
-    refuse(fmt::format("option population={}; expected 0 or >= 3", population));
-  if (parents == 1) refuse("option parents=1; expected 0 or >= 2");
   if (parents > 0 && population > 0 && parents > population)
     refuse(fmt::format("option parents={} > population={}; expected parents <= population", parents,
                        population));

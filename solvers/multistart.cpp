@@ -124,7 +124,7 @@ void MultistartOptions::bind(OptionBinder& binder) {
   binder.number(
       "effort", effort,
       "no further start after this many times the evaluations that the lowest optimum took; 0: every start",
-      0.0);
+      0.0, 1e6);
 }
 
 void MultistartOptions::validate() const {

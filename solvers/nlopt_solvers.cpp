@@ -240,9 +240,10 @@ void NloptOptions::bind(OptionBinder& binder) {
                   "relative gain of a start below which there is no further one", 0, 1);
   }
   if (algorithm->step)
-    binder.number("step", step, "initial step in units of half the box (0: NLopt's choice)", 0, 2);
+    binder.automatic("step", step, "initial step in units of half the box; auto: NLopt's choice", 1e-12, 2);
   if (algorithm->population)
-    binder.integer("population", population, "population size (0: NLopt's choice)", 0, 1000000);
+    binder.automatic("population", population, "population size; auto: NLopt's choice", 2,
+                     kLargestPopulation);
   if (algorithm->memory) binder.integer("memory", memory, "gradient pairs kept", 1, 10000);
   if (algorithm->local) {
     std::vector<std::string> names;

@@ -31,7 +31,7 @@ struct NloptOptions {
   double ftol = 1e-14;
   double gradient_tolerance = 1e-8;
   double restart_gain = 1e-8;
-  double step = 0;
+  double step = -1;  // -1: NLopt's choice
   int population = 0;
   int memory = 0;
   int restarts = 3;

@@ -140,7 +140,8 @@ void OptionBinder::number(std::string name, double& field, std::string help, dou
                       [&field] { return fmt::format("{}", field); },
                       [&field, lowest, highest, allowed](const std::string& text) -> std::string {
                         double value = 0;
-                        if (!parse_all(text, value) || std::isnan(value)) return "expected a number";
+                        if (!parse_all(text, value) || std::isnan(value))
+                          return "expected a number, " + allowed;
                         if (value < lowest || value > highest) return "expected " + allowed;
                         field = value;
                         return {};
@@ -153,10 +154,51 @@ void OptionBinder::integer(std::string name, int& field, std::string help, int l
                       [&field] { return fmt::format("{}", field); },
                       [&field, lowest, highest, allowed](const std::string& text) -> std::string {
                         int value = 0;
-                        if (!parse_all(text, value)) return "expected a whole number";
+                        if (!parse_all(text, value)) return "expected a whole number, " + allowed;
                         if (value < lowest || value > highest) return "expected " + allowed;
                         field = value;
                         return {};
+                      }});
+}
+
+namespace {
+
+constexpr const char* kAuto = "auto";
+
+template <class T>
+std::string automatic_text(T field, T automatic) {
+  return field == automatic ? kAuto : fmt::format("{}", field);
+}
+
+template <class T>
+std::string set_automatic(const std::string& text, T automatic, T lowest, T highest,
+                          const std::string& allowed, T& field) {
+  T value = 0;
+  const bool is_auto = text == kAuto;
+  if (!is_auto && (!parse_all(text, value) || !(value >= lowest && value <= highest)))
+    return "expected " + allowed;
+  field = is_auto ? automatic : value;
+  return {};
+}
+
+}  // namespace
+
+void OptionBinder::automatic(std::string name, double& field, std::string help, double lowest,
+                             double highest) {
+  const std::string allowed = fmt::format("{} or {}", kAuto, range_text(lowest, highest));
+  entries_.push_back({std::move(name), std::move(help), allowed,
+                      [&field] { return automatic_text(field, -1.0); },
+                      [&field, lowest, highest, allowed](const std::string& text) {
+                        return set_automatic(text, -1.0, lowest, highest, allowed, field);
+                      }});
+}
+
+void OptionBinder::automatic(std::string name, int& field, std::string help, int lowest, int highest) {
+  const std::string allowed = fmt::format("{} or {}", kAuto, range_text(lowest, highest));
+  entries_.push_back({std::move(name), std::move(help), allowed,
+                      [&field] { return automatic_text(field, 0); },
+                      [&field, lowest, highest, allowed](const std::string& text) {
+                        return set_automatic(text, 0, lowest, highest, allowed, field);
                       }});
 }
 

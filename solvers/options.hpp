@@ -35,6 +35,11 @@ struct OptionDescription {
 };
 
 // Ties option names to fields; one list serves parsing, validation, `bench list solvers` and the run record.
+//
+// What takes memory or time before the first evaluation has an upper limit, so that a typing error is told and does not run
+// out of memory.
+inline constexpr int kLargestPopulation = 100'000;
+
 class OptionBinder {
  public:
   void number(std::string name, double& field, std::string help,
@@ -42,6 +47,10 @@ class OptionBinder {
               double highest = std::numeric_limits<double>::infinity());
   void integer(std::string name, int& field, std::string help, int lowest = std::numeric_limits<int>::min(),
                int highest = std::numeric_limits<int>::max());
+  // Numbers that the method chooses itself unless one is given: "auto", which the field holds as -1 (double) or 0 (int) and
+  // which no number typed means.
+  void automatic(std::string name, double& field, std::string help, double lowest, double highest);
+  void automatic(std::string name, int& field, std::string help, int lowest, int highest);
   void flag(std::string name, bool& field, std::string help);
   void choice(std::string name, std::string& field, std::string help, std::vector<std::string> allowed);
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
+#include <limits>
 
 namespace odobench {
 
@@ -10,18 +10,20 @@ void ParticleSwarmOptions::bind(OptionBinder& binder) {
   binder.choice("variant", variant,
                 "modern: moves in the frame of its memory; thesis: (3.13)-(3.14); matlab: particleswarm",
                 {"modern", "thesis", "matlab"});
-  binder.integer(
+  binder.automatic(
       "swarm", swarm,
-      "particles, 0: modern 4 per parameter (at least 20), thesis 100, matlab min(100, 10 per parameter)", 0,
-      1 << 20);
-  binder.integer("iterations", iterations, "limit, 0: modern 20000, thesis 500, matlab 200 per parameter", 0);
-  binder.number("inertia", inertia,
-                "W, -1: modern 0.6 at first, thesis 0.7298; matlab adapts its own in 0.1..1.1", -1, 2);
-  binder.number("c1", c1, "attraction to the personal best, -1: modern 0.8, thesis 1.49618, matlab 1.49", -1,
-                10);
-  binder.number("c2", c2, "attraction to the best neighbour, -1: modern 1.2, thesis 1.49618, matlab 1.49", -1,
-                10);
-  binder.integer("informants", informants, "modern: other particles a particle hears of", 0, 1 << 20);
+      "particles; auto: modern 4 per parameter (at least 20), thesis 100, matlab min(100, 10 per parameter)",
+      2, kLargestPopulation);
+  binder.automatic("iterations", iterations,
+                   "limit; auto: modern 20000, thesis 500, matlab 200 per parameter", 1,
+                   std::numeric_limits<int>::max());
+  binder.automatic("inertia", inertia,
+                   "W; auto: modern 0.6 at first, thesis 0.7298; matlab adapts its own in 0.1..1.1", 0, 2);
+  binder.automatic("c1", c1, "attraction to the personal best; auto: modern 0.8, thesis 1.49618, matlab 1.49",
+                   0, 10);
+  binder.automatic("c2", c2,
+                   "attraction to the best neighbour; auto: modern 1.2, thesis 1.49618, matlab 1.49", 0, 10);
+  binder.integer("informants", informants, "modern: other particles a particle hears of", 0, 100);
   binder.number("cost_tolerance", cost_tolerance,
                 "modern: stop when the personal bests differ by at most this times the cost", 0, 1);
   binder.number("boundary", boundary,
@@ -33,12 +35,7 @@ void ParticleSwarmOptions::bind(OptionBinder& binder) {
                 1);
 }
 
-void ParticleSwarmOptions::validate() const {
-  const auto refuse = [](const std::string& what) { throw std::invalid_argument("solver 'pso': " + what); };
-  if (swarm == 1) refuse("option swarm=1; expected 0 or >= 2");
-  for (const auto& [name, value] : {std::pair{"inertia", inertia}, std::pair{"c1", c1}, std::pair{"c2", c2}})
-    if (value < 0 && value != -1) refuse(fmt::format("option {}={}; expected -1 or >= 0", name, value));
-}
+void ParticleSwarmOptions::validate() const {}
 
 int Swarm::remember(const Vector& costs) {
   int count = 0;

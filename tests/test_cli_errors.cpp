@@ -73,7 +73,7 @@ TEST(CliErrors, Options) {
   expect_refusal({"check", "--basline=x", "y"}, kUsage,
                  {"unknown option '--basline=x', did you mean '--baseline'?"});
   expect_refusal({"--solver=lm", "set.json"}, kUsage, {"unexpected argument 'set.json'"});
-  expect_refusal({"--repeat=0"}, kUsage, {"--repeat=0: expected a whole number in 1..1000000"});
+  expect_refusal({"--repeat=0"}, kUsage, {"--repeat=0: expected a whole number in 1..100000"});
   expect_refusal({"--repeat=-3"}, kUsage, {"--repeat=-3"});
   expect_refusal({"--repeat=2.5"}, kUsage, {"--repeat=2.5", "whole number"});
   expect_refusal({"--threads=0"}, kUsage, {"--threads=0"});

@@ -260,7 +260,7 @@ TEST(GeneticThesis, RouletteDrawsByOneMinusTheShareOfTheCost) {
 }
 
 TEST(Genetic, RefusesImpossibleOptions) {
-  EXPECT_THAT(refusal("ga[population=2]"), HasSubstr("population=2; expected 0 or >= 3"));
+  EXPECT_THAT(refusal("ga[population=2]"), HasSubstr("population=2; expected auto or 3..100000"));
   EXPECT_THAT(refusal("ga[population=10,parents=11]"), HasSubstr("parents=11 > population=10"));
   EXPECT_THAT(refusal("ga[crossover=7]"), HasSubstr("expected 0..6"));
   EXPECT_THAT(refusal("ga[factor_low=2]"), HasSubstr("factor_low=2 > factor_high=1.05"));
@@ -299,8 +299,8 @@ TEST(ParticleSwarmMatlab, StopsByItsStallRule) {
 }
 
 TEST(ParticleSwarm, RefusesImpossibleOptions) {
-  EXPECT_THAT(refusal("pso[swarm=1]"), HasSubstr("swarm=1; expected 0 or >= 2"));
-  EXPECT_THAT(refusal("pso[inertia=-0.5]"), HasSubstr("inertia=-0.5; expected -1 or >= 0"));
+  EXPECT_THAT(refusal("pso[swarm=1]"), HasSubstr("swarm=1; expected auto or 2..100000"));
+  EXPECT_THAT(refusal("pso[inertia=-0.5]"), HasSubstr("inertia=-0.5; expected auto or 0..2"));
   EXPECT_THAT(refusal("pso[variant=classic]"), HasSubstr("modern|thesis|matlab"));
 }
 

@@ -14,6 +14,10 @@ namespace odobench::simulate {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr std::size_t kMostPhases = 1000;  // every tick looks through them
+constexpr double kLongestDrive_s = 86'400, kLongestIdle_s = 3'600, kLongestDelay_s = 60;
+constexpr double kFastest = 1000;                       // m/s, rad/s, 1/s and factors of such
+constexpr double kNearest = 1e-6, kFarthest_m = 1'000;  // of a wheel from the middle, of its radius
 constexpr double kLargestShare =
     0.5;  // of speed lost to slip: beyond that nothing here is a model of a wheel
 
@@ -30,7 +34,7 @@ class Validator {
       if (!(std::abs(c) <= kHalfTrack))
         fail(fmt::format("robot/contact_offset_m: found {}, expected at most {} to either side", c,
                          kHalfTrack));
-    positive("robot/steering_limit_deg", s_.truth.steering_limit * 180 / kPi);
+    positive("robot/steering_limit_deg", s_.truth.steering_limit * 180 / kPi, 360, " deg");
     check_drives();
     check_control();
     check_odometry();
@@ -41,30 +45,37 @@ class Validator {
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw DataError(where_ + ": " + what); }
-  void positive(const char* name, double value) const {
-    if (!(value > 0) || !std::isfinite(value))
-      fail(fmt::format("{}: found {}, expected a positive number", name, value));
+  // Nothing that a wheeled robot has is beyond `most`: what a typing error makes of a number is told.
+  void positive(const char* name, double value, double most, const char* unit) const {
+    if (!(value > 0 && value <= most))
+      fail(fmt::format("{}: found {}, expected a positive number up to {}{}", name, value, most, unit));
   }
-  void not_negative(const char* name, double value) const {
-    if (!(value >= 0) || !std::isfinite(value))
-      fail(fmt::format("{}: found {}, expected a number >= 0", name, value));
+  void not_negative(const char* name, double value, double most, const char* unit) const {
+    if (!(value >= 0 && value <= most))
+      fail(fmt::format("{}: found {}, expected a number >= 0 up to {}{}", name, value, most, unit));
+  }
+  void either_side(const char* name, double value, double most, const char* unit) const {
+    if (!(std::abs(value) <= most))
+      fail(fmt::format("{}: found {}, expected at most {}{} to either side", name, value, most, unit));
   }
   void probability(const char* name, double value) const {
     if (!(value >= 0 && value <= 1)) fail(fmt::format("{}: found {}, expected 0 to 1", name, value));
   }
-  void range(const char* name, const Range& r) const {
-    if (!(r.low >= 0 && r.low <= r.high) || !std::isfinite(r.high))
-      fail(fmt::format("{}: found {} to {}, expected 0 <= first <= second", name, r.low, r.high));
+  void range(const char* name, const Range& r, double most, const char* unit) const {
+    if (!(r.low >= 0 && r.low <= r.high && r.high <= most))
+      fail(fmt::format("{}: found {} to {}, expected 0 <= first <= second <= {}{}", name, r.low, r.high, most,
+                       unit));
   }
 
   void check_robot(const char* name, const Parameters& z) const {
     for (std::size_t i = 0; i < kWheelCount; ++i) {
       const double a = z[i], b = z[kWheelCount + i], r = z[2 * kWheelCount + i];
-      if (!std::isfinite(a) || !std::isfinite(b) || !(std::hypot(a, b) > 0))
-        fail(
-            fmt::format("{}: wheel {} stands at ({}, {}), expected away from the origin", name, i + 1, a, b));
-      if (!(r > 0) || !std::isfinite(r))
-        fail(fmt::format("{}: r{} is {}, expected a positive radius", name, i + 1, r));
+      if (!(std::hypot(a, b) >= kNearest && std::hypot(a, b) <= kFarthest_m))
+        fail(fmt::format("{}: wheel {} stands at ({}, {}), expected away from the origin, {} to {} m", name,
+                         i + 1, a, b, kNearest, kFarthest_m));
+      if (!(r >= kNearest && r <= kFarthest_m))
+        fail(fmt::format("{}: r{} is {}, expected a positive radius, {} to {} m", name, i + 1, r, kNearest,
+                         kFarthest_m));
     }
   }
 
@@ -75,13 +86,17 @@ class Validator {
       if (d.name.empty()) fail("drives: found an empty name, expected one");
       if (!names.insert(d.name).second)
         fail(fmt::format("drives: found '{}' twice, expected every name once", d.name));
+      if (d.phases.size() > kMostPhases)
+        fail(fmt::format("drive '{}': found {} phases, expected at most {}", d.name, d.phases.size(),
+                         kMostPhases));
       if (d.phases.empty()) fail(fmt::format("drive '{}': found no phases, expected at least one", d.name));
       for (std::size_t i = 0; i < kWheelCount; ++i) {
-        if (!(d.speed_factor[i] > 0) || !std::isfinite(d.speed_factor[i]))
-          fail(fmt::format("drive '{}': speed_factor is {}, expected positive numbers", d.name,
-                           d.speed_factor[i]));
-        if (!std::isfinite(d.steering_offset[i]))
-          fail(fmt::format("drive '{}': a steering offset is not finite", d.name));
+        if (!(d.speed_factor[i] > 0 && d.speed_factor[i] <= kFastest))
+          fail(fmt::format("drive '{}': speed_factor is {}, expected positive numbers up to {}", d.name,
+                           d.speed_factor[i], kFastest));
+        if (!(std::abs(d.steering_offset[i]) <= 2 * kPi))
+          fail(fmt::format("drive '{}': a steering offset is {} deg, expected -360 to 360", d.name,
+                           d.steering_offset[i] * 180 / kPi));
       }
       for (const Phase& p : d.phases) check_phase(d, p);
     }
@@ -89,10 +104,13 @@ class Validator {
 
   void check_phase(const Drive& d, const Phase& p) const {
     const std::string place = fmt::format("drive '{}'", d.name);
-    if (!(p.duration_s > 0) || !std::isfinite(p.duration_s))
-      fail(fmt::format("{}: the duration is {} s, expected a positive number", place, p.duration_s));
-    if (!std::isfinite(p.twist.vx) || !std::isfinite(p.twist.vy) || !std::isfinite(p.twist.omega))
-      fail(fmt::format("{}: a velocity is not finite", place));
+    if (!(p.duration_s > 0 && p.duration_s <= kLongestDrive_s))
+      fail(fmt::format("{}: the duration is {} s, expected a positive number up to {} s", place, p.duration_s,
+                       kLongestDrive_s));
+    for (const double v : {p.twist.vx, p.twist.vy, p.twist.omega})
+      if (!(std::abs(v) <= kFastest))
+        fail(fmt::format("{}: a velocity is {}, expected at most {} m/s or rad/s to either side", place, v,
+                         kFastest));
     const WheelState wheels = d.command(s_.control.believed, p.twist);
     for (std::size_t i = 0; i < kWheelCount; ++i)
       if (std::abs(wheels.steering[i]) > s_.truth.steering_limit + 1e-9)
@@ -102,15 +120,15 @@ class Validator {
 
   void check_control() const {
     const Control& c = s_.control;
-    not_negative("control/gain_position", c.gain_position);
-    not_negative("control/gain_heading", c.gain_heading);
-    not_negative("control/delay_s", c.delay_s);
-    range("control/lead_s", c.lead_s);
-    not_negative("control/wheel_lag_s", c.wheel_lag_s);
-    positive("control/steering_rate_rad_s", c.steering_rate);
-    not_negative("control/steering_bias_rad", c.steering_bias);
-    not_negative("control/steering_wander_rad", c.steering_wander);
-    positive("control/wander_time_s", c.wander_time_s);
+    not_negative("control/gain_position", c.gain_position, kFastest, " 1/s");
+    not_negative("control/gain_heading", c.gain_heading, kFastest, " 1/s");
+    not_negative("control/delay_s", c.delay_s, kLongestDelay_s, " s");
+    range("control/lead_s", c.lead_s, kLongestDelay_s, " s");
+    not_negative("control/wheel_lag_s", c.wheel_lag_s, kLongestDelay_s, " s");
+    positive("control/steering_rate_rad_s", c.steering_rate, 1e6, " rad/s");
+    not_negative("control/steering_bias_rad", c.steering_bias, kPi, " rad");
+    not_negative("control/steering_wander_rad", c.steering_wander, kPi, " rad");
+    positive("control/wander_time_s", c.wander_time_s, kLongestDrive_s, " s");
     // A first-order loop with a delay is unstable beyond gain * delay = pi / 2.
     const double product = std::max(c.gain_position, c.gain_heading) * (c.delay_s + 2 * c.wheel_lag_s);
     if (c.closed_loop && product >= kPi / 2)
@@ -120,54 +138,46 @@ class Validator {
 
   void check_odometry() const {
     const Odometry& o = s_.odometry;
-    positive("odometry/rate_hz", o.rate_hz);
-    if (o.rate_hz < 5 || o.rate_hz > 10000)
+    if (!(o.rate_hz >= 5 && o.rate_hz <= 10000))
       fail(fmt::format("odometry/rate_hz: found {}, expected 5 to 10000", o.rate_hz));
-    not_negative("odometry/speed_quantum_rad_s", o.speed_quantum);
-    not_negative("odometry/steering_quantum_rad", o.steering_quantum);
-    not_negative("odometry/speed_noise_rad_s", o.speed_noise);
-    not_negative("odometry/stamp_jitter_s", o.stamp_jitter_s);
+    not_negative("odometry/speed_quantum_rad_s", o.speed_quantum, kFastest, " rad/s");
+    not_negative("odometry/steering_quantum_rad", o.steering_quantum, kPi, " rad");
+    not_negative("odometry/speed_noise_rad_s", o.speed_noise, kFastest, " rad/s");
+    not_negative("odometry/stamp_jitter_s", o.stamp_jitter_s, kLongestDelay_s, " s");
     probability("odometry/on_time", o.on_time);
-    not_negative("odometry/on_time_s", o.on_time_s);
-    not_negative("odometry/delay_s", o.delay_s);
+    not_negative("odometry/on_time_s", o.on_time_s, kLongestDelay_s, " s");
+    not_negative("odometry/delay_s", o.delay_s, kLongestDelay_s, " s");
     probability("odometry/stall_probability", o.stall_probability);
-    range("odometry/stall_s", o.stall_s);
+    range("odometry/stall_s", o.stall_s, kLongestDelay_s, " s");
   }
 
   void check_capture() const {
     const Capture& c = s_.capture;
-    positive("capture/rate_hz", c.rate_hz);
-    if (c.rate_hz < 1 || c.rate_hz > 10000)
+    if (!(c.rate_hz >= 1 && c.rate_hz <= 10000))
       fail(fmt::format("capture/rate_hz: found {}, expected 1 to 10000", c.rate_hz));
-    not_negative("capture/poll_s", c.poll_s);
-    not_negative("capture/delay_s", c.delay_s);
+    not_negative("capture/poll_s", c.poll_s, kLongestDelay_s, " s");
+    not_negative("capture/delay_s", c.delay_s, kLongestDelay_s, " s");
     probability("capture/stall_probability", c.stall_probability);
-    range("capture/stall_s", c.stall_s);
-    range("capture/loss", c.loss);
-    if (c.loss.high > 0.9)
-      fail(fmt::format("capture/loss: found up to {}, expected at most 0.9", c.loss.high));
-    not_negative("capture/position_noise_m", c.position_noise);
-    not_negative("capture/heading_noise_rad", c.heading_noise);
+    range("capture/stall_s", c.stall_s, kLongestDelay_s, " s");
+    range("capture/loss", c.loss, 0.9, "");
+    not_negative("capture/position_noise_m", c.position_noise, kFarthest_m, " m");
+    not_negative("capture/heading_noise_rad", c.heading_noise, 2 * kPi, " rad");
   }
 
   void check_rest() const {
-    range("idle/before_s", s_.idle.before_s);
-    range("idle/after_s", s_.idle.after_s);
-    not_negative("start/position_m", s_.start.position);
-    not_negative("start/heading_rad", s_.start.heading);
-    not_negative("slip/fixed", s_.slip.fixed);
-    not_negative("slip/random", s_.slip.random);
-    if (std::max(s_.slip.fixed, s_.slip.random) > kLargestShare)
-      fail(fmt::format("slip: found {}, expected at most {}", std::max(s_.slip.fixed, s_.slip.random),
-                       kLargestShare));
-    if (!std::isfinite(s_.slip.yaw_bias))
-      fail(fmt::format("slip/yaw_bias_rad_s: found {}, expected a finite number", s_.slip.yaw_bias));
+    range("idle/before_s", s_.idle.before_s, kLongestIdle_s, " s");
+    range("idle/after_s", s_.idle.after_s, kLongestIdle_s, " s");
+    not_negative("start/position_m", s_.start.position, kFarthest_m, " m");
+    not_negative("start/heading_rad", s_.start.heading, 2 * kPi, " rad");
+    not_negative("slip/fixed", s_.slip.fixed, kLargestShare, "");
+    not_negative("slip/random", s_.slip.random, kLargestShare, "");
+    either_side("slip/yaw_bias_rad_s", s_.slip.yaw_bias, kFastest, " rad/s");
     for (const auto& [name, gains] : s_.slip.gains) {
       const auto same = [&drive = name](const Drive& d) { return d.name == drive; };
       if (std::none_of(s_.drives.begin(), s_.drives.end(), same))
         fail(fmt::format("slip/gains: found '{}', expected the name of a drive", name));
-      positive("slip/gains", gains.linear);
-      positive("slip/gains", gains.angular);
+      positive("slip/gains", gains.linear, kFastest, "");
+      positive("slip/gains", gains.angular, kFastest, "");
     }
   }
 
@@ -198,6 +208,17 @@ RecordingScenario default_scenario() {
   s.truth.parameters = s.control.believed = nominal_parameters(s.robot);
   s.drives = reference_drives();
   return s;
+}
+
+double most_samples(const RecordingScenario& s, const Drive& drive) {
+  const double idle = s.exact ? 0 : s.idle.before_s.high + s.idle.after_s.high;
+  return (drive.duration() + idle) * (s.odometry.rate_hz + (s.exact ? 0 : s.capture.rate_hz));
+}
+
+double most_samples(const RecordingScenario& s) {
+  double sum = 0;
+  for (const Drive& drive : s.drives) sum += s.repetitions * most_samples(s, drive);
+  return sum;
 }
 
 void validate(const RecordingScenario& scenario, const std::string& where) {

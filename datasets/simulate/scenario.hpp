@@ -132,11 +132,16 @@ struct RecordingScenario {
 // The nominal robot on the six reference drives.
 RecordingScenario default_scenario();
 
+// Ticks of the odometry and captured samples of one repetition of the drive, at most.
+double most_samples(const RecordingScenario& scenario, const Drive& drive);
+// Of all drives with their repetitions.
+double most_samples(const RecordingScenario& scenario);
+
 // The nominal values of a robot with the twelve parameters.
 Parameters nominal_parameters(const Robot& robot);
 
-// Throws DataError "WHERE: what was found, expected ...": names, negative or non-finite values, rates <= 0, durations
-// <= 0, probabilities outside [0, 1], ranges the wrong way round, a drive that needs a steering angle beyond the
+// Throws DataError "WHERE: what was found, expected ...": names, negative or non-finite values, values beyond any wheeled robot
+// (docs/simulation.md lists the limits), rates <= 0, durations <= 0, probabilities outside [0, 1], ranges the wrong way round, a drive that needs a steering angle beyond the
 // limit, a believed or true wheel at the origin or with radius <= 0, gains of a trajectory that is not driven,
 // contradictory options (exact with slip, gains, or closed loop), a feedback too fast for its delay.
 void validate(const RecordingScenario& scenario, const std::string& where);

@@ -10,6 +10,9 @@ namespace odobench::dynamics {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kLongestDrive_s = 86'400, kHighestVoltage = 1'000;
+// How far the steps of DormandPrince reach on y' = -lambda y, lambda times the step.
+constexpr double kStableReach = 3.3;
 // Two times closer than this are the same.
 constexpr double kTimeSlack = 1e-9;
 
@@ -19,13 +22,28 @@ void check_segment(const Segment& segment, std::size_t index, double begin) {
   };
   if (!std::isfinite(segment.until_s) || segment.until_s <= begin)
     fail(fmt::format("until_s is {}, expected more than {} (a duration above 0)", segment.until_s, begin));
+  if (segment.until_s > kLongestDrive_s)
+    fail(fmt::format("until_s is {}, expected at most {} s", segment.until_s, kLongestDrive_s));
   for (std::size_t i = 0; i < kWheels; ++i) {
-    if (!std::isfinite(segment.voltage[i]))
-      fail(fmt::format("the voltage of wheel {} is {}, expected a finite number", i + 1, segment.voltage[i]));
+    if (!(std::abs(segment.voltage[i]) <= kHighestVoltage))
+      fail(fmt::format("the voltage of wheel {} is {}, expected a finite number of -{} to {} V", i + 1,
+                       segment.voltage[i], kHighestVoltage, kHighestVoltage));
     if (!(std::abs(segment.steering[i]) <= kPi / 2 + 1e-12))
       fail(fmt::format("the steering of wheel {} is {:.6g} deg, expected -90 to 90: a wheel turns no further",
                        i + 1, segment.steering[i] * 180 / kPi));
   }
+}
+
+// The electrical time constant is by far the shortest; however smooth the motion is, no step is much longer.
+void check_stiffness(const DriveSetup& setup) {
+  const MotorParameters& m = setup.robot.motor;
+  const double steps = setup.segments.back().until_s * m.resistance / m.inductance / kStableReach;
+  if (setup.integration.method == Method::DormandPrince && steps > static_cast<double>(kMostSteps))
+    throw std::invalid_argument(fmt::format(
+        "inductance is {} H, with a resistance of {} ohm the time constant of the current is {:.3g} s and a "
+        "drive of {} s takes {:.2g} steps, expected at most {}",
+        m.inductance, m.resistance, m.inductance / m.resistance, setup.segments.back().until_s, steps,
+        kMostSteps));
 }
 
 }  // namespace
@@ -40,6 +58,7 @@ void DriveSetup::validate() const {
     check_segment(segments[i], i, begin);
     begin = segments[i].until_s;
   }
+  check_stiffness(*this);
 }
 
 Inputs inputs_at(const std::vector<Segment>& segments, std::size_t index, double t) {
@@ -57,11 +76,26 @@ Inputs inputs_at(const std::vector<Segment>& segments, std::size_t index, double
   return in;
 }
 
+void check_size(const DriveSetup& setup, double step_s) {
+  if (!(step_s > 0) || !std::isfinite(step_s))
+    throw std::invalid_argument(fmt::format("output_step_s is {}, expected a positive number", step_s));
+  const double end = setup.segments.back().until_s;
+  if (end / step_s > static_cast<double>(kMostSamples))
+    throw std::invalid_argument(
+        fmt::format("output_step_s is {}, a drive of {} s makes {:.3g} samples, expected at most {}", step_s,
+                    end, end / step_s, kMostSamples));
+  const double steps = end / setup.integration.step_s;
+  if (setup.integration.method == Method::RungeKutta4 && steps > static_cast<double>(kMostSteps))
+    throw std::invalid_argument(
+        fmt::format("integration: step_s is {}, a drive of {} s takes {:.3g} steps, expected at most {}",
+                    setup.integration.step_s, end, steps, kMostSteps));
+}
+
 std::vector<Sample> simulate_drive(const DriveSetup& setup, double step_s) {
   setup.validate();
-  if (!(step_s > 0) || !std::isfinite(step_s))
-    throw std::invalid_argument(fmt::format("the output step is {} s, expected a positive number", step_s));
+  check_size(setup, step_s);
   State state{};
+  StepCount count;
   std::vector<Sample> samples;
   std::size_t segment = 0;
   const auto record = [&](double t) {
@@ -83,7 +117,7 @@ std::vector<Sample> simulate_drive(const DriveSetup& setup, double step_s) {
           [&](const State& s, State& d, double at) {
             d = rates(setup.robot, setup.model, inputs_at(setup.segments, segment, at), s);
           },
-          t, stop, setup.integration);
+          t, stop, setup.integration, count);
       t = stop;
     }
     record(target);

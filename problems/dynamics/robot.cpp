@@ -8,6 +8,9 @@
 namespace odobench::dynamics {
 namespace {
 
+// SI units; less is a typing error and makes the equations stiff beyond any step.
+constexpr double kLeastParameter = 1e-9;
+
 struct Vec2 {
   double x = 0, y = 0;
 };
@@ -93,29 +96,30 @@ RobotParameters robot_set(const std::string& name) {
 const std::vector<ParameterDescription>& parameter_descriptions() {
   using P = RobotParameters;
   static const std::vector<ParameterDescription> list = {
-      {"mass", "m", "kg", true, false, "table 2.1", [](P& p) -> double& { return p.mass; }},
-      {"half_length", "a", "m", true, false, "half of the length 0.775 m of table 2.1",
+      {"mass", "m", "kg", true, false, 1e6, "table 2.1", [](P& p) -> double& { return p.mass; }},
+      {"half_length", "a", "m", true, false, 100, "half of the length 0.775 m of table 2.1",
        [](P& p) -> double& { return p.half_length; }},
-      {"half_width", "b", "m", true, false, "half of the width 0.55 m of table 2.1",
+      {"half_width", "b", "m", true, false, 100, "half of the width 0.55 m of table 2.1",
        [](P& p) -> double& { return p.half_width; }},
-      {"yaw_inertia", "Izz", "kg m2", false, false, "m (length^2 + width^2) / 12, a plate",
+      {"yaw_inertia", "Izz", "kg m2", false, false, 1e9, "m (length^2 + width^2) / 12, a plate",
        [](P& p) -> double& { return p.yaw_inertia; }},
-      {"wheel_radius", "r", "m", false, false, "", [](P& p) -> double& { return p.wheel_radius; }},
-      {"drive_gain", "k", "N s/m", false, false, "drive force per speed of slip",
+      {"wheel_radius", "r", "m", false, false, 100, "", [](P& p) -> double& { return p.wheel_radius; }},
+      {"drive_gain", "k", "N s/m", false, false, 1e9, "drive force per speed of slip",
        [](P& p) -> double& { return p.drive_gain; }},
-      {"lateral_gain", "klat", "N s/m", false, true,
+      {"lateral_gain", "klat", "N s/m", false, true, 1e9,
        "side force per sideways speed; wheel contact only; 10 k",
        [](P& p) -> double& { return p.lateral_gain; }},
-      {"linear_friction", "ktr", "N s/m", false, true, "as published only; 4 k",
+      {"linear_friction", "ktr", "N s/m", false, true, 1e9, "as published only; 4 k",
        [](P& p) -> double& { return p.linear_friction; }},
-      {"rotary_friction", "krot", "N m s/rad", false, true, "as published only; 4 k (a^2 + b^2)",
+      {"rotary_friction", "krot", "N m s/rad", false, true, 1e12, "as published only; 4 k (a^2 + b^2)",
        [](P& p) -> double& { return p.rotary_friction; }},
-      {"resistance", "R", "ohm", false, false, "", [](P& p) -> double& { return p.motor.resistance; }},
-      {"inductance", "La", "H", false, false, "", [](P& p) -> double& { return p.motor.inductance; }},
-      {"flux_constant", "cphi", "V s/rad", false, false, "torque per current, voltage per speed",
+      {"resistance", "R", "ohm", false, false, 1e6, "", [](P& p) -> double& { return p.motor.resistance; }},
+      {"inductance", "La", "H", false, false, 1e3, "", [](P& p) -> double& { return p.motor.inductance; }},
+      {"flux_constant", "cphi", "V s/rad", false, false, 1e4, "torque per current, voltage per speed",
        [](P& p) -> double& { return p.motor.flux_constant; }},
-      {"wheel_inertia", "Iw", "kg m2", false, false, "", [](P& p) -> double& { return p.motor.inertia; }},
-      {"bearing_loss", "kdc", "N m s/rad", false, true, "",
+      {"wheel_inertia", "Iw", "kg m2", false, false, 1e4, "",
+       [](P& p) -> double& { return p.motor.inertia; }},
+      {"bearing_loss", "kdc", "N m s/rad", false, true, 1e4, "",
        [](P& p) -> double& { return p.motor.bearing_loss; }},
   };
   return list;
@@ -128,6 +132,12 @@ void validate(const RobotParameters& parameters) {
     if (!std::isfinite(value) || value < 0 || (value == 0 && !d.may_be_zero))
       throw std::invalid_argument(fmt::format("{} is {} {}, expected a {}", d.name, value, d.unit,
                                               d.may_be_zero ? "number >= 0" : "positive number"));
+    if (value > d.most)
+      throw std::invalid_argument(
+          fmt::format("{} is {} {}, expected at most {} {}", d.name, value, d.unit, d.most, d.unit));
+    if (value != 0 && value < kLeastParameter)
+      throw std::invalid_argument(fmt::format("{} is {} {}, expected at least {} {}", d.name, value, d.unit,
+                                              kLeastParameter, d.unit));
   }
 }
 

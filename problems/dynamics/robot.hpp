@@ -61,12 +61,13 @@ struct ParameterDescription {
   const char* unit;
   bool given;  // by the thesis (table 2.1, figure 2.8); else chosen
   bool may_be_zero;
+  double most;  // more is a typing error
   const char* text;
   double& (*value)(RobotParameters&);
 };
 const std::vector<ParameterDescription>& parameter_descriptions();
 
-// Throws std::invalid_argument "mass is -5 kg, expected a positive number".
+// Throws std::invalid_argument "mass is -5 kg, expected a positive number" or "..., expected at most 1e+06 kg".
 void validate(const RobotParameters& parameters);
 
 // Of the robot, with the integrals that its power balances need [J] and the wheels' turns.

@@ -11,6 +11,7 @@
 namespace odobench::dynamics {
 namespace {
 
+constexpr double kLargestVariance = 1e6;  // m^2, m^2/s^4, deg^2
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct Vec2 {
@@ -56,9 +57,9 @@ TruthRow true_row(const RobotParameters& p, const Sample& before, const Sample& 
 
 void SensorNoise::validate() const {
   const auto require = [](double variance, const char* name) {
-    if (!(variance >= 0) || !std::isfinite(variance))
-      throw std::invalid_argument(
-          fmt::format("the variance {} is {}, expected a number >= 0", name, variance));
+    if (!(variance >= 0 && variance <= kLargestVariance))
+      throw std::invalid_argument(fmt::format("the variance {} is {}, expected a number >= 0 up to {}", name,
+                                              variance, kLargestVariance));
   };
   require(encoder_m2, "encoder_m2");
   require(acceleration_m2_s4, "acceleration_m2_s4");
