@@ -47,9 +47,10 @@ TEST_P(SolverOptions, WhatNobodyMeansIsRefusedOrHarmless) {
         expect_sound_run(GetParam(), {{option.name, value}});
         continue;
       }
-      EXPECT_THAT(message, HasSubstr("option " + option.name + "=" + value));
+      EXPECT_THAT(message, HasSubstr(option.name + "=" + value));
       if (option.allowed != "a solver") {
-        EXPECT_THAT(message, AnyOf(HasSubstr(option.allowed), HasSubstr("expected true or false")));
+        EXPECT_THAT(message, AnyOf(HasSubstr(option.allowed), HasSubstr("expected true or false"),
+                                   HasSubstr("expected factor_low <= factor_high")));
       }
     }
   }
