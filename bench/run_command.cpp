@@ -128,8 +128,6 @@ CellList plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded, std::
   return cells;
 }
 
-}
-
 ExitCode outcome(const RunOptions& options, const std::vector<RunRecord>& records, std::size_t cells,
                  bool interrupted) {
   std::size_t runs = 0, stopped = 0;
