@@ -320,7 +320,7 @@ TEST(DynamicsRefuses, DrivesThatCannotBe) {
               HasSubstr("segment 1: the steering of wheel 3 is 91.6732 deg, expected -90 to 90"));
   EXPECT_THAT(error_of([](DriveSetup& s) { s.segments[0].voltage[0] = std::nan(""); }),
               HasSubstr("voltage of wheel 1"));
-  EXPECT_THAT(error_of([](DriveSetup&) {}, 0), HasSubstr("output step is 0 s"));
+  EXPECT_THAT(error_of([](DriveSetup&) {}, 0), HasSubstr("output_step_s is 0"));
   EXPECT_THAT(error_of([](DriveSetup& s) { s.integration.step_s = -1; }), HasSubstr("step_s is -1"));
   EXPECT_THAT(error_of([](DriveSetup& s) { s.integration.relative_tolerance = 0; }),
               HasSubstr("relative_tolerance is 0"));

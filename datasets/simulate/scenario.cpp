@@ -139,7 +139,7 @@ class Validator {
   void check_odometry() const {
     const Odometry& o = s_.odometry;
     if (!(o.rate_hz >= 5 && o.rate_hz <= 10000))
-      fail(fmt::format("odometry/rate_hz: found {}, expected 5 to 10000", o.rate_hz));
+      fail(fmt::format("odometry/rate_hz: found {}, expected a positive rate, 5 to 10000 Hz", o.rate_hz));
     not_negative("odometry/speed_quantum_rad_s", o.speed_quantum, kFastest, " rad/s");
     not_negative("odometry/steering_quantum_rad", o.steering_quantum, kPi, " rad");
     not_negative("odometry/speed_noise_rad_s", o.speed_noise, kFastest, " rad/s");
@@ -154,7 +154,7 @@ class Validator {
   void check_capture() const {
     const Capture& c = s_.capture;
     if (!(c.rate_hz >= 1 && c.rate_hz <= 10000))
-      fail(fmt::format("capture/rate_hz: found {}, expected 1 to 10000", c.rate_hz));
+      fail(fmt::format("capture/rate_hz: found {}, expected a positive rate, 1 to 10000 Hz", c.rate_hz));
     not_negative("capture/poll_s", c.poll_s, kLongestDelay_s, " s");
     not_negative("capture/delay_s", c.delay_s, kLongestDelay_s, " s");
     probability("capture/stall_probability", c.stall_probability);
