@@ -9,18 +9,21 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.hpp"
+#include "base/range.hpp"
+#include "base/text.hpp"
 
 namespace odobench {
 namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kLongestFound = 160;  // characters of a message about a value
+
 // What was found, short enough for one line.
 std::string brief(const json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
-  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+  return shown(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
 // The word NaN, Infinity or -Infinity, which other programs write though JSON has none, whose reading ended at `read`; else "".
@@ -41,10 +44,38 @@ std::string_view not_a_number_at(std::string_view text, std::size_t read) {
   return {};
 }
 
+std::size_t line_breaks(std::string_view text, std::size_t end) {
+  return static_cast<std::size_t>(
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(end, text.size())), '\n'));
+}
+
+// Where the number `digits` stands first outside of strings.
+std::size_t find_number(std::string_view text, std::string_view digits) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted && text[i] == '\\') ++i;
+    const bool begins =
+        i == 0 || std::string_view("0123456789+-.eE").find(text[i - 1]) == std::string_view::npos;
+    if (!quoted && begins && text.compare(i, digits.size(), digits) == 0) return i;
+  }
+  return 0;
+}
+
+// "number overflow parsing '1e309'", the only fault of this kind in reading.
+std::string too_large(const json::out_of_range& e, std::string_view text, const std::string& file,
+                      std::size_t line, const std::string& place) {
+  const std::string_view what = e.what();
+  const auto open = what.find('\'');
+  const std::string_view digits = what.substr(open + 1, what.rfind('\'') - open - 1);
+  return fmt::format("{}:{}: {}: found {}, expected a number within the range of a double", file,
+                     line + line_breaks(text, find_number(text, digits)), place, shown(digits));
+}
+
 std::string broken(const json::parse_error& e, std::string_view text, const std::string& file,
-                   const std::string& place) {
+                   std::size_t line, const std::string& place) {
   const std::size_t read = std::min(e.byte > 0 ? e.byte - 1 : 0, text.size());
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(read), '\n');
+  line += line_breaks(text, read);
   if (const std::string_view word = not_a_number_at(text, read); !word.empty())
     return fmt::format("{}:{}: {}: found {}, expected a finite number", file, line, place, word);
   // The library's sentence follows its own "[...] parse error at line L, column C: ".
@@ -90,6 +121,7 @@ class Reading {
   }
   bool parse_error(std::size_t, const std::string&, const json::exception& error) {
     if (const auto* broken = dynamic_cast<const json::parse_error*>(&error)) throw *broken;
+    if (const auto* large = dynamic_cast<const json::out_of_range*>(&error)) throw *large;
     throw DataError(fmt::format("{}: broken JSON: {}", file_, error.what()));
   }
 
@@ -147,6 +179,21 @@ class Reading {
 
 }  // namespace
 
+json parse_json(std::string_view text, const std::string& file, std::size_t line) {
+  json root;
+  Reading reading(file, root);
+  try {
+    json::sax_parse(text, &reading);
+    return root;
+  } catch (const json::parse_error& e) {
+    throw DataError(broken(e, text, file, line, reading.place()));
+  } catch (const json::out_of_range& e) {
+    throw DataError(too_large(e, text, file, line, reading.place()));
+  } catch (const json::exception& e) {
+    throw DataError(fmt::format("{}: broken JSON: {}", file, e.what()));
+  }
+}
+
 struct JsonNode::Document {
   std::string file;
   json root;
@@ -158,14 +205,7 @@ JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value, 
 JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& file) {
   auto document = std::make_shared<Document>();
   document->file = file.string();
-  Reading reading(document->file, document->root);
-  try {
-    json::sax_parse(text, &reading);
-  } catch (const json::parse_error& e) {
-    throw DataError(broken(e, text, document->file, reading.place()));
-  } catch (const json::exception& e) {
-    throw DataError(fmt::format("{}: broken JSON: {}", document->file, e.what()));
-  }
+  document->root = parse_json(text, document->file);
   const json* root = &document->root;
   return {std::move(document), root, ""};
 }
@@ -175,8 +215,9 @@ JsonNode JsonNode::read(const std::filesystem::path& file) {
 }
 
 void JsonNode::fail(const std::string& found, const std::string& expected) const {
-  throw DataError(fmt::format("{}: {}: found {}, expected {}", document_->file, path_.empty() ? "/" : path_,
-                              found, expected));
+  throw DataError(fmt::format("{}: {}: found {}, expected {}", shown(document_->file, kLongestPath),
+                              path_.empty() ? "/" : shown(path_, kLongestPath), shown(found, kLongestFound),
+                              expected));
 }
 
 const std::string& JsonNode::file() const {
@@ -234,7 +275,9 @@ bool JsonNode::boolean() const {
 
 double JsonNode::number() const {
   if (!value_->is_number()) fail(brief(*value_), "a number");
-  return value_->get<double>();
+  const auto value = value_->get<double>();
+  if (!in_range(value)) fail(brief(*value_), fmt::format("a number of at most {:g} in size", kLargestNumber));
+  return value;
 }
 
 std::int64_t JsonNode::integer() const {

@@ -14,11 +14,16 @@
 
 namespace odobench {
 
+// The document in a text whose first line is number `line` of the file. DataError "file:line: broken JSON: ...", as is a key that
+// occurs twice in one object; NaN, Infinity and numbers beyond the range of a double, which other programs write, are
+// "file:line: /path/to/value: found ..., expected ...".
+nlohmann::json parse_json(std::string_view text, const std::string& file, std::size_t line = 1);
+
 // A value inside a parsed file. Cheap to copy; copies share the document. Every mismatch is a DataError
 // "file: /path/to/value: found ..., expected ...".
 class JsonNode {
  public:
-  // Parses; broken JSON is "file:line: broken JSON: ...", as is a key that occurs twice in one object.
+  // Parses like parse_json().
   static JsonNode parse(std::string_view text, const std::filesystem::path& file);
   static JsonNode read(const std::filesystem::path& file);
 
@@ -35,9 +40,9 @@ class JsonNode {
   // The text member, or nothing when it is absent.
   std::string text_or_empty(const std::string& key) const;
   bool boolean() const;
-  double number() const;
+  double number() const;         // of at most kLargestNumber in size
   std::int64_t integer() const;  // written without fraction or exponent, fits in 64 bits
-  // Whole arrays at once; entries are checked like number() and integer().
+  // Whole arrays at once; entries must be numbers of any size, or integers.
   std::vector<double> numbers() const;
   std::vector<std::int64_t> integers() const;
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "base/json_node.hpp"
 #include "base/text.hpp"
 
 namespace odobench {
@@ -42,18 +42,11 @@ std::string json_scalar(const Json& value, const std::string& where, const std::
 }
 
 std::vector<ConfigEntry> from_json(const std::string& path, const std::string& text) {
-  std::set<std::string> seen;
-  const Json::parser_callback_t no_duplicates = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(parsed.get<std::string>()).second)
-      refuse(path, fmt::format("'{}' is given twice", shown(parsed.get<std::string>())));
-    return true;
-  };
   Json root;
   try {
-    root = Json::parse(text, no_duplicates);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    refuse(fmt::format("{}:{}", path, 1 + std::count(text.begin(), end, '\n')), "not valid JSON");
+    root = parse_json(text, path);
+  } catch (const DataError& error) {
+    throw std::invalid_argument(error.what());
   }
   std::vector<ConfigEntry> entries;
   for (const auto& [key, value] : root.items()) {

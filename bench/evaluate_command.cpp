@@ -6,11 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 
 #include "base/error.hpp"
 #include "base/files.hpp"
+#include "base/json_node.hpp"
+#include "base/range.hpp"
 #include "bench/context.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/option_values.hpp"
@@ -25,27 +26,6 @@ namespace odobench {
 namespace {
 
 using Json = nlohmann::json;
-
-Json parse_json(const std::string& file) {
-  const std::string text = read_file(file);
-  std::vector<std::set<std::string>> keys;
-  const Json::parser_callback_t no_duplicates = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      throw DataError(fmt::format("{}: the key '{}' is given twice", file, parsed.get<std::string>()));
-    return true;
-  };
-  try {
-    return Json::parse(text, no_duplicates);
-  } catch (const Json::exception& error) {
-    const auto* parse = dynamic_cast<const Json::parse_error*>(&error);
-    const std::size_t byte = parse == nullptr ? 0 : std::min(parse->byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
-    throw DataError(fmt::format("{}:{}: not valid JSON; expected an object of parameters or an array of such",
-                                file, line));
-  }
-}
 
 ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& parameters,
                          const std::string& where, std::string label) {
@@ -67,16 +47,16 @@ ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& p
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto entry = object.find(names[i]);
     if (entry == object.end()) throw DataError(fmt::format("{}: '{}' is missing", where, names[i]));
-    if (!entry->is_number() || !std::isfinite(entry->get<double>()))
-      throw DataError(
-          fmt::format("{}: '{}' is {}, expected a finite number", where, names[i], entry->dump()));
+    if (!entry->is_number() || !in_range(entry->get<double>()))
+      throw DataError(fmt::format("{}: '{}' is {}, expected a number of at most {:g} in size", where,
+                                  names[i], entry->dump(), kLargestNumber));
     values[static_cast<Eigen::Index>(i)] = entry->get<double>();
   }
   return {label, values};
 }
 
 std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters, const std::string& file) {
-  const Json root = parse_json(file);
+  const Json root = parse_json(read_file(file), file);
   const std::string stem = std::filesystem::path(file).stem().string();
   if (!root.is_array()) return {from_object(root, parameters, file, stem)};
   std::vector<ParameterSet> sets;
@@ -100,6 +80,16 @@ void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
                           parameters[i].lower, parameters[i].upper);
   }
   if (!list.empty()) warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
+}
+
+void require_finite(const RunRecord& record) {
+  bool finite = record.cost && std::isfinite(*record.cost);
+  for (const RecordingError& e : record.errors)
+    for (const double error : e.max_error) finite = finite && std::isfinite(error);
+  if (!finite)
+    throw DataError(
+        fmt::format("parameters '{}' on data set '{}': the cost overflows, expected values of a robot's size",
+                    record.label, record.dataset));
 }
 
 }  // namespace
@@ -173,6 +163,7 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   std::vector<RunRecord> records;
   for (const ParameterSet& set : sets) {
     records.push_back(evaluation_record(loaded, set.label, set.values, context));
+    require_finite(records.back());
   }
   const std::vector<Table> tables = evaluation_tables(records);
   if (!options.out.empty()) {

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/stop.hpp"
 #include "bench/context.hpp"
@@ -96,6 +98,7 @@ class FilterRun {
   FilterRun(const FilterOptions& options, const FilterSetup& setup, InstructionSet kernel,
             const FilterRunReader& data, const std::atomic<bool>& interrupt)
       : setup_(setup),
+        file_name_(data.file()),
         profile_(setup.constants),
         method_(
             make_filter_method(options.solver, profile_, options.budget, options.seed, kernel, interrupt)),
@@ -106,6 +109,7 @@ class FilterRun {
         rows_(static_cast<std::size_t>(setup.constants.samples)),
         truths_(rows_count()),
         times_(rows_count()),
+        lines_(rows_count()),
         with_truth_(!options.truth.empty()),
         interrupt_(interrupt) {
     if (!options.out.empty())
@@ -125,6 +129,7 @@ class FilterRun {
     const ConvertedRow& row = converter_.convert(input.row);
     rows_.push(row);
     times_.push(input.row.time_s);
+    lines_.push(input.row.line);
     if (with_truth_) truths_.push(converter_.convert(input.truth));
     if (method_.registry != nullptr) method_.registry->observe(row.sample);
     const FilterOutput* output = filter_.push(row.sample);
@@ -132,6 +137,7 @@ class FilterRun {
     const FilterOutput* relaxed = relaxed_ ? relaxed_->push(row.sample) : nullptr;
     if (interrupt_.load(std::memory_order_relaxed)) return false;
     if (output == nullptr) return true;
+    require_finite(*output);
     const auto value = [](const FilterOutput* o) {
       return o == nullptr ? std::nullopt : std::optional<double>(o->hamiltonian);
     };
@@ -150,9 +156,22 @@ class FilterRun {
   }
 
  private:
+  // Sizes, periods and deviations that are numbers each may overflow together.
+  void require_finite(const FilterOutput& o) const {
+    double sum = o.hamiltonian + o.zero.h0 + o.state.ax12 + o.state.ay12 + o.state.r1 + o.state.sx1 +
+                 o.state.sy1 + o.first.rotation;
+    for (std::size_t w = 0; w < 4; ++w) sum += std::hypot(o.first.x[w], o.first.y[w]);
+    if (std::isfinite(sum)) return;
+    throw DataError(
+        fmt::format("{}:{}: the window of {} rows from here on overflows: found H = {:g}, expected "
+                    "values, period and standard deviations of a size that a robot meets",
+                    file_name_, lines_[0], setup_.constants.samples, o.hamiltonian));
+  }
+
   std::size_t rows_count() const { return static_cast<std::size_t>(setup_.constants.samples); }
 
   FilterSetup setup_;
+  const std::string file_name_;
   ProfileForm profile_;
   FilterMethod method_;
   SlidingFilter filter_;
@@ -163,6 +182,7 @@ class FilterRun {
   LastOf<ConvertedRow> rows_;
   LastOf<TrueSample> truths_;
   LastOf<double> times_;
+  LastOf<std::size_t> lines_;
   const bool with_truth_;
   const std::atomic<bool>& interrupt_;
   std::int64_t count_ = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/error.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/interrupt.hpp"
@@ -57,6 +58,17 @@ Fused fuse_one(const Recording& recording, const Vector& z, const FilterChoice& 
             std::move(result.sensors)};
   return {track_errors(recording, result.track, result.factors), std::move(result.track),
           std::move(result.sensors)};
+}
+
+void require_finite(const TrackErrors& e, const FilterChoice& filter) {
+  double sum = e.max.x + e.max.y + e.max.theta + e.rmse_position + e.rmse_heading;
+  for (const double nees : e.nees) sum += nees;
+  for (const Eigen::Vector3d& one : e.component_nees) sum += one.sum();
+  if (!std::isfinite(sum))
+    throw DataError(
+        fmt::format("recording '{}': the track of --filter={} overflows, expected parameters, "
+                    "samples and deviations of a size that a robot meets",
+                    e.max.recording, filter.name));
 }
 
 // Of 95 % expected; instants of one drive are not independent.
@@ -193,6 +205,7 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, recordings.size(), [&](std::size_t i) {
       fused[i] = fuse_one(recordings[i], z, filter, sensors, streams[i]);
+      require_finite(fused[i].errors, filter);
     });
   });
   FusedRow out;

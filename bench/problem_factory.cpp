@@ -8,9 +8,11 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/range.hpp"
 #include "base/sha256.hpp"
 #include "bench/locations.hpp"
 #include "bench/option_values.hpp"
+#include "datasets/columns.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "solvers/options.hpp"
 
@@ -35,12 +37,29 @@ std::vector<std::string> problem_names() {
   return names;
 }
 
+namespace {
+
+// A set may hold any finite number; sums of squares may not.
+void require_range(const std::string& path, const std::vector<Recording>& recordings) {
+  for (const Recording& r : recordings)
+    for_each_value_column(r, [&](const std::string& name, const char*, const std::vector<double>& values) {
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (!in_range(values[k]))
+          throw DataError(fmt::format(
+              "{}: recording '{}': {}, sample {}: found {}, expected a number of at most {:g} in size", path,
+              r.id, name, k, values[k], kLargestNumber));
+    });
+}
+
+}  // namespace
+
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel) {
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
   Dataset dataset = load_dataset(path);
   if (dataset.robot.kinematics != "4wis4wid")
     throw DataError(fmt::format("{}: robot.kinematics is '{}'; the calibration problem knows 4wis4wid",
                                 path.string(), dataset.robot.kinematics));
+  require_range(path.string(), dataset.recordings);
   std::shared_ptr<const CalibrationProblem> model;
   try {
     model = std::make_shared<const CalibrationProblem>(robot_parameters(dataset.robot),

@@ -11,6 +11,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/stop.hpp"
 #include "bench/cells.hpp"
@@ -51,6 +52,19 @@ double optimum(const EntropyWindow& window, const BlockQuadratic& cost, BlockSea
   search.minimise({g.data(), size}, {x.data(), size});
   EntropyState state;
   return value_at(window, cost.unstack(x), state);
+}
+
+// Sizes, periods and deviations that are numbers each may overflow together.
+void require_finite(const std::vector<EntropyWindow>& windows, const std::string& file) {
+  for (const EntropyWindow& w : windows) {
+    EntropyState state;
+    const double h = value_at(w, Problem(WindowProblem(w)).start(), state);
+    if (!std::isfinite(h))
+      throw DataError(
+          fmt::format("{}: window '{}' overflows: found H = {:g}, expected values, period and "
+                      "standard deviations of a size that a robot meets",
+                      file, w.id, h));
+  }
 }
 
 LoadedWindow load(const EntropyWindow& window) {
@@ -194,6 +208,7 @@ ExitCode windows_command(const WindowsOptions& options) {
   plan.base_seed = options.seed;
   plan.problem = kWindowProblem;
   const std::vector<EntropyWindow> windows = chosen(load_entropy_windows(options.file), options.only);
+  require_finite(windows, options.file);
   const std::string stem = std::filesystem::path(options.file).stem().string();
   const std::string sha256 = sha256_of_file(options.file);
   const int threads = thread_count(options.threads);

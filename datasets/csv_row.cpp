@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/range.hpp"
 #include "base/text.hpp"
 
 namespace odobench {
@@ -154,6 +155,9 @@ double CsvRow::number(std::string_view text, std::size_t column) const {
   if (error != std::errc() || end != first + digits.size() || !std::isfinite(value))
     fail(
         fmt::format("found {} in column {}, expected a finite number", quoted(text), quoted(names_[column])));
+  if (!in_range(value))
+    fail(fmt::format("found {} in column {}, expected a number of at most {:g} in size", quoted(text),
+                     quoted(names_[column]), kLargestNumber));
   if (now != Decimal::Unknown && decimal_ != Decimal::Unknown && now != decimal_)
     fail(fmt::format("found {} in column {}, expected a decimal {} as in the numbers before it", quoted(text),
                      quoted(names_[column]), decimal_ == Decimal::Comma ? "comma" : "point"));

@@ -19,7 +19,7 @@ class CsvRow {
   std::string_view field(std::size_t column) const { return fields_[column]; }
   std::size_t line() const { return line_; }
 
-  // The field as a finite decimal number (exponents welcome), or DataError.
+  // The field as a decimal number of at most kLargestNumber in size (exponents welcome), or DataError.
   double number(std::size_t column) const;
   // The number in `text`, a part of the row's field `column`.
   double number(std::string_view text, std::size_t column) const;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/json_node.hpp"
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
@@ -14,9 +15,7 @@ constexpr const char* kFormat = "entropy-window-1";
 constexpr std::int64_t kMostSamples = 10000;
 
 double finite(const JsonNode& node) {
-  const double value = node.number();
-  if (!std::isfinite(value)) node.fail(fmt::format("{}", value), "a finite number");
-  return value;
+  return node.number();
 }
 
 double positive(const JsonNode& node) {
@@ -29,7 +28,9 @@ std::vector<double> finite_numbers(const JsonNode& node, std::size_t count) {
   const std::vector<double> values = node.numbers();
   if (values.size() != count) node.fail(fmt::format("{} numbers", values.size()), fmt::format("{}", count));
   for (std::size_t i = 0; i < count; ++i)
-    if (!std::isfinite(values[i])) node.fail(fmt::format("{} in place {}", values[i], i), "finite numbers");
+    if (!in_range(values[i]))
+      node.fail(fmt::format("{} in place {}", values[i], i),
+                fmt::format("numbers of at most {:g} in size", kLargestNumber));
   return values;
 }
 

@@ -159,6 +159,7 @@ void FilterRunReader::check_time(double time) {
 
 bool FilterRunReader::read(FilterRow& row) {
   if (!stream_.next()) return false;
+  row.line = stream_.line();
   if (time_) {
     row.time_s = stream_.number(*time_);
     if (read_ > 0) check_time(row.time_s);

@@ -42,6 +42,7 @@ struct FilterRow {
   std::array<double, 4> steering{};  // rad
   double ax = 0, ay = 0;             // m/s^2
   double rotation_deg = 0;           // in the step
+  std::size_t line = 0;              // of the file
 };
 
 class FilterRunReader {

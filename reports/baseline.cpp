@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "base/json_node.hpp"
 #include "reports/comparison.hpp"
 #include "reports/json_view.hpp"
 #include "reports/metrics.hpp"
@@ -194,18 +195,11 @@ void check_tolerances(const Tolerances& t) {
 }  // namespace
 
 Baseline read_baseline(const std::string& path) {
-  const std::string content = read_file(path);
+  const json document = parse_json(read_file(path), path);
   try {
-    const json document = json::parse(content);
     Baseline baseline = baseline_from(JsonView(document));
     baseline.source = path;
     return baseline;
-  } catch (const json::parse_error& error) {
-    const auto end = content.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, content.size()));
-    throw std::runtime_error(
-        fmt::format("{}:{}: {}", path, 1 + std::count(content.begin(), end, '\n'), complaint(error)));
-  } catch (const json::exception& error) {
-    throw std::runtime_error(fmt::format("{}: {}", path, complaint(error)));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
   }

@@ -33,7 +33,7 @@ std::string result_name(const Change& c, bool with_group) {
 }
 
 Cell number(double value, int digits) {
-  return std::isnan(value) ? Cell{} : significant_cell(value, digits);
+  return std::isfinite(value) ? significant_cell(value, digits) : Cell{};
 }
 
 bool listed_as_changed(const Change& c) {
@@ -125,7 +125,7 @@ Table all_table(const RunComparison& comparison, bool machine, bool with_group) 
     cells.push_back(count_cell(static_cast<double>(c.before.values.size())));
     cells.push_back(count_cell(static_cast<double>(c.after.values.size())));
     append_change(cells, c);
-    cells.push_back(c.test && c.shift ? significant_cell(*c.shift, kChangeDigits) : Cell{});
+    cells.push_back(c.test && c.shift ? number(*c.shift, kChangeDigits) : Cell{});
     cells.push_back(c.test ? fixed_cell(c.a12, 3) : Cell{});
     cells.push_back(c.test ? significant_cell(c.test->p, 2) : Cell{});
     cells.push_back(c.test ? significant_cell(c.p_adjusted, 2) : Cell{});

@@ -80,9 +80,8 @@ class ErrorNoise {
 Cell error_cell(double value, const double* reference, std::optional<double> noise) {
   Cell cell = fixed_cell(value, kDigits);
   cell.noise = noise;
-  if (reference != nullptr && !std::isnan(*reference) && !std::isnan(value))
-    cell.difference = value - *reference;
-  return cell;
+  if (reference != nullptr && std::isfinite(value - *reference)) cell.difference = value - *reference;
+  return unless_infinite(std::move(cell));
 }
 
 void append_cells(std::vector<Cell>& row, const TrajectoryErrors* errors, const TrajectoryErrors* reference,
@@ -154,10 +153,10 @@ std::vector<Cell> totals_row(const ComparisonRow& row, const Comparison& compari
   const Totals totals = error_totals(row.errors);
   const ErrorNoise noise(row);
   for (std::size_t v = 0; v < 3; ++v) {
-    cells.push_back(fixed_cell(totals.sums[v], kDigits));
+    cells.push_back(unless_infinite(fixed_cell(totals.sums[v], kDigits)));
     cells.back().noise = noise.of_total(v);
   }
-  cells.push_back(fixed_cell(totals.total, kDigits));
+  cells.push_back(unless_infinite(fixed_cell(totals.total, kDigits)));
   cells.back().noise = noise.of_total(std::nullopt);
   const ComparisonRow* nominal = comparison.nominal();
   if (nominal == nullptr || &row == nominal || !complete(*nominal, comparison)) {
@@ -165,8 +164,13 @@ std::vector<Cell> totals_row(const ComparisonRow& row, const Comparison& compari
     return cells;
   }
   const double before = error_totals(nominal->errors).total;
-  cells.push_back(fixed_cell(totals.total - before, kDigits));
-  cells.push_back(before > 0 ? fixed_cell(100 * (totals.total - before) / before, 2) : Cell{});
+  if (std::isinf(totals.total) || std::isinf(before)) {
+    cells.insert(cells.end(), 2, Cell{});
+  } else {
+    cells.push_back(fixed_cell(totals.total - before, kDigits));
+    const double percent = 100 * (totals.total - before) / before;
+    cells.push_back(before > 0 ? unless_infinite(fixed_cell(percent, 2)) : Cell{});
+  }
   const WorseMeans worse = worse_means(row, *nominal);
   cells.push_back(text_cell(fmt::format("{} of {}", worse.worse, worse.all)));
   return cells;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "base/json_node.hpp"
 #include "reports/json_view.hpp"
 
 namespace odobench {
@@ -274,6 +275,9 @@ std::vector<RunRecord> read_records(const std::string& path) {
                         path, line_number, line.size()));
       throw std::runtime_error(
           fmt::format("{}:{}: column {}: {}", path, line_number, error.byte, complaint(error)));
+    } catch (const json::out_of_range&) {
+      parse_json(line, path, static_cast<std::size_t>(line_number));  // says which number
+      throw;
     } catch (const json::exception& error) {
       throw std::runtime_error(fmt::format("{}:{}: {}", path, line_number, complaint(error)));
     } catch (const std::runtime_error& error) {

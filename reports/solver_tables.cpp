@@ -39,7 +39,7 @@ std::optional<double> known_cost(const Comparison& comparison) {
 Cell ratio_to_nominal(const Comparison& comparison, const RunRecord& record) {
   const ComparisonRow* nominal = comparison.nominal();
   if (nominal == nullptr || !nominal->shown->cost || !record.cost || *nominal->shown->cost <= 0) return {};
-  return significant_cell(*record.cost / *nominal->shown->cost, 6);
+  return unless_infinite(significant_cell(*record.cost / *nominal->shown->cost, 6));
 }
 
 // The J that others are measured against: the lowest known, else the lowest of these records.
@@ -62,7 +62,7 @@ struct GapReference {
     if (!cost || (!known && from <= 0)) return {};
     const double unit = from == 0 ? 1.0 : std::abs(from);
     const double noise = std::max(cost_noise(row).value_or(0), kRepeats * std::abs(*cost));
-    return with_noise(significant_cell((*cost - from) / unit, 3), noise / unit);
+    return with_noise(unless_infinite(significant_cell((*cost - from) / unit, 3)), noise / unit);
   }
 };
 

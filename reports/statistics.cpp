@@ -19,11 +19,40 @@ double quantile(const std::vector<double>& sorted, double p) {
   const double fraction = position - static_cast<double>(below);
   // Without the test, 0 * infinity or infinity - infinity would spoil the quantile.
   if (fraction == 0 || sorted[below] == sorted[below + 1]) return sorted[below];
-  return sorted[below] + fraction * (sorted[below + 1] - sorted[below]);
+  const double step = sorted[below + 1] - sorted[below];
+  if (std::isinf(step)) return (1 - fraction) * sorted[below] + fraction * sorted[below + 1];
+  return sorted[below] + fraction * step;
 }
 
 bool any_nan(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+}
+
+// Values near the largest double are added in units of the largest: a mean of finite numbers is finite.
+double mean_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0, largest = 0;
+  for (const double v : values) {
+    sum += v;
+    largest = std::max(largest, std::abs(v));
+  }
+  if (std::isfinite(sum) || !std::isfinite(largest)) return sum / n;
+  sum = 0;
+  for (const double v : values) sum += v / largest / n;
+  return sum * largest;
+}
+
+double deviation_of(const std::vector<double>& values, double mean) {
+  const auto degrees = static_cast<double>(values.size() - 1);
+  double squares = 0, largest = 0;
+  for (const double v : values) {
+    squares += (v - mean) * (v - mean);
+    largest = std::max(largest, std::abs(v - mean));
+  }
+  if (std::isfinite(squares) || !std::isfinite(largest)) return std::sqrt(squares / degrees);
+  squares = 0;
+  for (const double v : values) squares += std::pow((v - mean) / largest, 2) / degrees;
+  return std::sqrt(squares) * largest;
 }
 
 }  // namespace
@@ -32,14 +61,9 @@ ErrorStatistics error_statistics_of(const std::vector<double>& repetitions) {
   if (repetitions.empty())
     throw std::invalid_argument("error statistics need at least one repetition, got 0");
   if (any_nan(repetitions)) return {kNaN, kNaN, kNaN};
-  const auto n = static_cast<double>(repetitions.size());
-  double sum = 0;
-  for (double e : repetitions) sum += e;
-  const double mean = sum / n;
-  double squares = 0;
-  for (double e : repetitions) squares += (e - mean) * (e - mean);
+  const double mean = mean_of(repetitions);
   return {*std::max_element(repetitions.begin(), repetitions.end()), mean,
-          repetitions.size() < 2 ? kNaN : std::sqrt(squares / (n - 1))};
+          repetitions.size() < 2 ? kNaN : deviation_of(repetitions, mean)};
 }
 
 std::vector<TrajectoryErrors> error_statistics(const std::vector<RecordingError>& errors) {

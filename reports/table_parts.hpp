@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,5 +38,10 @@ void add_reference(Table& table, const ComparisonRow& row);
 
 // "upper a1 b2; lower a2", "" when every parameter is inside the box.
 std::string active_bounds(const RunRecord& record);
+
+// Nothing in place of an infinite number: what was computed from finite ones and overflowed has no value to show.
+inline Cell unless_infinite(Cell cell) {
+  return cell.value && std::isinf(*cell.value) ? Cell{} : cell;
+}
 
 }  // namespace odobench

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "base/json_node.hpp"
 #include "reports/json_view.hpp"
 
 namespace odobench {
@@ -157,13 +158,7 @@ std::optional<TrackSet> read_tracks(const fs::path& run_directory) {
   const fs::path folder = run_directory / kFolder;
   const fs::path file = folder / "tracks.json";
   if (!fs::exists(file)) return std::nullopt;
-  const std::string text = read_file(file);
-  json document;
-  try {
-    document = json::parse(text);
-  } catch (const json::exception& error) {
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), complaint(error)));
-  }
+  const json document = parse_json(read_file(file), file.string());
   try {
     return read_index(JsonView(document), folder);
   } catch (const std::runtime_error& error) {

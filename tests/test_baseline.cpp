@@ -329,8 +329,8 @@ TEST(BaselineFileErrors, NameFileAndPath) {
 }
 
 TEST(BaselineFileErrors, BrokenFiles) {
-  EXPECT_THAT(reading_error("{\n\"schema_version\": 1,\n oops}"), HasSubstr(":3: syntax error"));
-  EXPECT_THAT(reading_error(""), HasSubstr(":1: syntax error"));
+  EXPECT_THAT(reading_error("{\n\"schema_version\": 1,\n oops}"), HasSubstr(":3: broken JSON: syntax error"));
+  EXPECT_THAT(reading_error(""), HasSubstr(":1: broken JSON: syntax error"));
   EXPECT_EQ(reading_error("[]"), ": /: expected an object, found a list");
   EXPECT_EQ(reading_error("{\"schema_version\": 1}"), ": /: missing field 'tolerances'");
   EXPECT_THAT(reading_error(R"({"schema_version": 1, "tolerances": {"cost_relative": 0}, "entries": []})"),

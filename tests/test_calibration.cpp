@@ -7,6 +7,7 @@
 #include "problems/calibration/structure.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
+#include "solvers/verdict.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/synthetic_recording.hpp"
 
@@ -111,33 +112,78 @@ TEST(Calibration, BatchHasTheBitsOfSingleEvaluations) {
     EXPECT_EQ(costs[k], problem.cost(candidates.col(k))) << k;
 }
 
-// Data without noise: what rounding leaves of the structured cost is below its stated floor and never negative, and a solver that
-// gets there has converged.
-TEST(Calibration, ExactDataEndAtTheRoundingFloor) {
+// The recordings as this robot would have driven them, moved by `noise` (m, rad) up and down in turn.
+std::vector<Recording> driven_by(const Vector& truth, double noise) {
   std::vector<Recording> recordings = some_recordings();
-  const Vector truth = perturbed(4);
   for (Recording& r : recordings) {
     const PoseTrack q = direct::integrate(r, truth);
-    r.x = q.x;
-    r.y = q.y;
-    r.theta = q.theta;
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      const double error = k > 0 ? noise * std::sin(1.0 + 12.9898 * static_cast<double>(k)) : 0.0;
+      r.x[k] = q.x[k] + error;
+      r.y[k] = q.y[k] - error;
+      r.theta[k] = q.theta[k] + error;
+    }
   }
+  return recordings;
+}
+
+// The structured form squares errors of the heading, not headings: near exact data it has the digits of the equations as written.
+TEST(Calibration, TheStructuredCostKeepsItsDigitsNearExactData) {
+  const Vector truth = perturbed(4);
+  for (const auto& [noise, relative] : std::vector<std::pair<double, double>>{
+           {1e-9, 1e-6}, {1e-8, 1e-7}, {1e-7, 1e-8}, {1e-6, 1e-9}, {1e-5, 1e-10}, {1e-3, 1e-12}}) {
+    const std::vector<Recording> recordings = driven_by(truth, noise);
+    const double expected = direct::cost(recordings, truth);
+    for (const InstructionSet k : available_instruction_sets()) {
+      const CalibrationStructure structure(recordings, nominal_vector(), k);
+      NormalEquations e;
+      structure.normal_equations(truth, e);
+      Vector batch(1);
+      structure.batch_cost(truth, batch);
+      for (const double cost : {structure.cost(truth), e.cost, batch[0]})
+        EXPECT_NEAR(cost / expected, 1.0, relative) << to_string(k) << " noise " << noise;
+    }
+  }
+}
+
+TEST(Calibration, TheGradientKeepsItsDigitsNearExactData) {
+  const Vector truth = perturbed(4);
+  const std::vector<Recording> recordings = driven_by(truth, 1e-8);
+  for (const InstructionSet k : available_instruction_sets()) {
+    const CalibrationProblem problem(nominal_robot(), recordings, k);
+    Vector r(problem.residual_count());
+    Matrix j(problem.residual_count(), 12);
+    problem.residuals_and_jacobian(truth, r, j);
+    NormalEquations e;
+    problem.normal_equations(truth, e);
+    const Vector jtr = j.transpose() * r;
+    for (Eigen::Index i = 0; i < 12; ++i)
+      EXPECT_NEAR(e.jtr[i], jtr[i], 2e-7 * j.col(i).norm() * r.norm()) << to_string(k) << " " << i;
+  }
+}
+
+// Data without noise: what rounding leaves is below the stated floor and never negative, not even before the clamp, and a solver
+// that gets there has converged.
+TEST(Calibration, ExactDataEndAtTheRoundingFloor) {
+  const Vector truth = perturbed(4);
+  const std::vector<Recording> recordings = driven_by(truth, 0);
   for (const InstructionSet k : available_instruction_sets()) {
     const CalibrationProblem model(nominal_robot(), recordings, k);
-    const double floor = model.rounding_floor(truth);
-    EXPECT_LT(floor, 1e-9);
+    const CalibrationStructure structure(recordings, nominal_vector(), k);
+    EXPECT_LT(model.rounding_floor(truth), 1e-20);
     for (int scatter = 0; scatter < 20; ++scatter) {
       Vector x = truth;
       x[scatter % 12] *= 1 + 1e-12 * scatter;
       NormalEquations e;
-      model.normal_equations(x, e);
+      structure.normal_equations(x, e);
       Vector batch(1);
-      model.batch_cost(x, batch);
+      structure.batch_cost(x, batch);
       const double exact = direct::cost(recordings, x);
-      for (const double cost : {model.cost(x), e.cost, batch[0]}) {
+      for (const double cost : {structure.cost(x), e.cost, batch[0]}) {
         EXPECT_GE(cost, 0);
-        EXPECT_LE(std::abs(cost - exact), floor) << to_string(k);
+        EXPECT_LE(std::abs(cost - exact), model.rounding_floor(x)) << to_string(k);
       }
+      EXPECT_GE(model.cost(x), 0);
     }
     const Problem problem(std::make_shared<const CalibrationProblem>(nominal_robot(), recordings, k));
     for (const char* solver : {"lm", "ceres", "ip", "nlopt:slsqp"}) {
@@ -145,9 +191,13 @@ TEST(Calibration, ExactDataEndAtTheRoundingFloor) {
       options.budget.max_evaluations = 1000;
       const Result r = solve(problem, {solver, {}}, problem.start(), options);
       EXPECT_EQ(r.termination, Termination::Converged) << to_string(k) << " " << r.brief();
-      EXPECT_LE(r.cost, 10 * floor) << r.brief();
+      EXPECT_LE(r.cost, 1e-11) << r.brief();
       EXPECT_GE(r.cost, 0) << r.brief();
+      const auto check = check_optimality(problem, r.x);
+      ASSERT_TRUE(check);
+      EXPECT_TRUE(check->holds()) << to_string(k) << " " << r.brief() << " " << check->text();
       if (std::string(solver) == "lm") {
+        EXPECT_LE(r.cost, 1e-20) << r.brief();
         EXPECT_LE(r.counts.total(), 200) << r.brief();
       }
     }

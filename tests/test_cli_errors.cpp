@@ -158,8 +158,10 @@ TEST(CliErrors, ConfigFiles) {
   refuse("c.ini", "[runs]\nsolver = lm\n", {"c.ini:1", "[runs]"});
   refuse("d.ini", "solver\n", {"d.ini:1", "expected key = value"});
   refuse("e.ini", "seed = 1\nseed = 2\n", {"e.ini:2", "'seed' is given twice"});
-  refuse("f.json", R"({"seed": 1, "seed": 2})", {"'seed' is given twice"});
-  refuse("g.json", "{\n\"seed\": 1,\n}", {"g.json:3", "not valid JSON"});
+  refuse("f.json", R"({"seed": 1, "seed": 2})", {"found the key \"seed\" twice"});
+  refuse("g.json", "{\n\"seed\": 1,\n}", {"g.json:3: broken JSON"});
+  refuse("m.json", "{\"seed\": 1,\n\"target\": -1e400}",
+         {"m.json:2: /target: found -1e400, expected a number within the range of a double"});
   refuse("h.json", R"({"max-evals": 0})", {"h.json", "--max-evals=0"});
   refuse("i.json", R"({"solver": {"name": "lm"}})", {"'solver' is object"});
   refuse("j.json", R"({"config": "a.json"})", {"unknown key 'config'"});
@@ -186,13 +188,16 @@ TEST(CliErrors, ParameterFiles) {
   missing.erase("b3");
   refuse("a.json", missing.dump(), {"a.json", "'b3' is missing"});
   refuse("b.json", with("r5", 0.1), {"b.json", "unknown key 'r5'"});
-  refuse("c.json", with("a1", "0.1"), {"c.json", "'a1' is \"0.1\", expected a finite number"});
+  refuse("c.json", with("a1", "0.1"), {"c.json", "'a1' is \"0.1\", expected a number"});
   refuse("d.json", with("a1", nullptr), {"'a1' is null"});
-  refuse("e.json", "{\"a1\": NaN}", {"e.json:1", "not valid JSON"});
-  refuse("f.json", "{\"a1\": 1e999}", {"f.json"});
+  refuse("e.json", "{\"a1\": NaN}", {"e.json:1: /a1: found NaN, expected a finite number"});
+  refuse("f.json", "{\n\"name\": \"1e999\",\n\"a1\": 1e999}",
+         {"f.json:3: /a1: found 1e999, expected a number within the range of a double"});
+  refuse("j.json", with("b2", 1e308),
+         {"j.json", "'b2' is 1e+308, expected a number of at most 1e+50 in size"});
   refuse("g.json", "[]", {"empty array"});
   refuse("h.json", "[" + good.dump() + ", 3]", {"entry 2", "number"});
-  refuse("i.json", "{\"a1\": 0.1, \"a1\": 0.2}", {"'a1' is given twice"});
+  refuse("i.json", "{\"a1\": 0.1, \"a1\": 0.2}", {"found the key \"a1\" twice"});
   expect_refusal({"evaluate", "--parameters=published:ml"}, kUsage,
                  {"neither a file nor a name", "known: nominal, truth"});
   expect_refusal({"evaluate", "--parameters=nominal,nominal"}, kUsage, {"two sets are called 'nominal'"});
@@ -202,11 +207,16 @@ TEST(CliErrors, RecordsAndBaselines) {
   const TemporaryFolder folder;
   expect_refusal({"report", (folder / "absent").string()}, kData, {"absent"});
   expect_refusal({"report", folder.file("bad.jsonl", "{}\n")}, kData, {"bad.jsonl:1"});
+  expect_refusal({"report", folder.file("large.jsonl", "\n{\"cost\": 1e309}\n")}, kData,
+                 {"large.jsonl:2: /cost: found 1e309, expected a number within the range of a double"});
   expect_refusal({"report", folder.file("empty.jsonl", "")}, kData, {"no run record"});
   const std::string out = (folder / "out").string();
   ASSERT_EQ(run_bench({"--solver=lm", "--problem=sphere", "--out=" + out}).exit_code, 0);
   expect_refusal({"check", "--baseline=" + (folder / "absent.json").string(), out}, kData, {"absent.json"});
   expect_refusal({"check", "--baseline=" + folder.file("bad.json", "{}"), out}, kData, {"bad.json"});
+  expect_refusal(
+      {"check", "--baseline=" + folder.file("large.json", "{\"entries\":\n[{\"cost\": 1e309}]}"), out}, kData,
+      {"large.json:2: /entries/0/cost: found 1e309, expected a number within the range of a double"});
 }
 
 TEST(CliErrors, RawFiles) {

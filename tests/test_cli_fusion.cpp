@@ -70,6 +70,7 @@ TEST(CliDiscretise, RefusesBadSystems) {
   refused(R"({"A": [[1]], "states": ["a", "b"]})", "2 names, expected 1");
   refused(R"({"A": [[1]], "C": [[1]]})", "unknown key \"C\"");
   refused(R"({"A": [[1]]]})", "broken JSON");
+  refused(R"({"A": [[1e309]]})", ":1: /A/0/0: found 1e309, expected a number within the range of a double");
   expect_refusal({"discretise", "--system=" + kTurn, "--period=0"}, 2, "--period=0");
   expect_refusal({"discretise", "--system=" + kTurn, "--period=1", "--order=0"}, 2, "--order=0");
   expect_refusal({"discretise", "--period=1"}, 2, "--system");

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "reports/record.hpp"
@@ -58,6 +59,48 @@ std::string between(const std::string& text, const std::string& begin, const std
   if (at == std::string::npos) return "";
   const std::size_t start = at + begin.size();
   return text.substr(start, text.find(end, start) - start);
+}
+
+// A number of a table that is not finite, or nothing.
+std::string not_finite(const std::string& text) {
+  static const std::regex word("(^|[^A-Za-z])-?(nan|inf|infty)([^A-Za-z]|$)");
+  std::smatch found;
+  if (!std::regex_search(text, found, word)) return "";
+  return text.substr(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, found.position() - 60)), 120);
+}
+
+TEST(NotFinite, IsFound) {
+  EXPECT_NE(not_finite("lm,1,inf,2"), "");
+  EXPECT_NE(not_finite("| 1.7 (nan) |"), "");
+  EXPECT_EQ(not_finite("information about infinite nano things"), "");
+}
+
+// Sums, differences and ratios of numbers near the ends of the range of a double.
+TEST_F(CliReport, FiniteRecordsGiveFiniteTables) {
+  const std::vector<RunRecord> good = read_records(run_ + "/runs.jsonl");
+  for (const double value : {1.7e308, -1.7e308, 1e-320})
+    for (const bool of_nominal : {false, true}) {
+      std::string text;
+      for (RunRecord r : good) {
+        if ((r.label == "nominal") == of_nominal) {
+          r.cost = value;
+          for (RecordingError& e : r.errors)
+            e.max_error = {std::abs(value), std::abs(value), std::abs(value)};
+        }
+        text += to_json_line(r) + "\n";
+      }
+      const std::string changed = out_.file("changed.jsonl", text);
+      for (const char* format : {"console", "md", "csv", "json", "latex"})
+        for (const std::vector<std::string>& words : {std::vector<std::string>{"report", changed},
+                                                      {"compare", changed, run_},
+                                                      {"compare", run_, changed}}) {
+          std::vector<std::string> all = words;
+          all.push_back(std::string("--format=") + format);
+          const ProcessResult result = run_bench(all);
+          EXPECT_LE(result.exit_code, 1) << result.err;
+          EXPECT_EQ(not_finite(result.out), "") << value << " " << words.front() << " " << format;
+        }
+    }
 }
 
 TEST_F(CliReport, ThePageHoldsTheNumbersOfTheRecords) {

@@ -102,6 +102,11 @@ TEST(CliWindows, Refuses) {
   };
   refused("\"sigma_e\":0.005", "\"sigma_e\":0", "/windows/0/params/sigma_e: found 0, expected a number > 0");
   refused("\"dt\":0.1", "\"dt\":-1", "/windows/0/params/dt: found -1");
+  refused("\"dt\":0.1", "\"dt\":1e308",
+          "/windows/0/params/dt: found 1e+308, expected a number of at most 1e+50");
+  refused("\"dt\":0.1", "\"dt\":1e309", ":1: /windows/0 (");
+  refused("\"dt\":0.1", "\"dt\":1e309", "/dt: found 1e309, expected a number within the range of a double");
+  refused("\"sigma_e\":0.005", "\"sigma_e\":1e-200", "window 'random0' overflows");
   refused("\"ay\":[", "\"ay\":[1,", "/windows/0/ay: found 5 numbers, expected 4");
   refused("\"id\":\"random1\"", "\"id\":\"random0\"", "a second time");
   refused("\"format\"", "\"fromat\"", "no key \"format\"");

@@ -256,6 +256,15 @@ TEST(Record, FileErrorsNameFileAndLine) {
               ThrowsMessage<std::runtime_error>(HasSubstr("/tmp: cannot be read")));
 }
 
+TEST(Statistics, FiniteNumbersGiveFiniteStatistics) {
+  const ErrorStatistics e = error_statistics_of({1.6e308, 1.2e308, 0.8e308});
+  EXPECT_NEAR(e.mean / 1.2e308, 1, 1e-15);
+  EXPECT_NEAR(e.sigma / 0.4e308, 1, 1e-15);
+  const Spread s = spread({-1.6e308, 1.6e308});
+  EXPECT_EQ(s.median, 0);
+  EXPECT_NEAR(s.lower_quartile / -0.8e308, 1, 1e-15);
+}
+
 TEST(Statistics, HandComputedErrors) {
   // Maximum 7, mean 4, squared deviations 4 + 1 + 0 + 9 + 0 = 14 over n - 1 = 4.
   const ErrorStatistics e = error_statistics_of({2, 3, 4, 7, 4});

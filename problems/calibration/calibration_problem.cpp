@@ -58,8 +58,9 @@ CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
   check(parameters_, recordings_);
   for (const Recording& r : recordings_)
     for (std::size_t k = 0; k < r.size(); ++k)
-      rounding_floor_ += r.x[k] * r.x[k] + r.y[k] * r.y[k] + r.theta[k] * r.theta[k];
-  rounding_floor_ *= 0.25 * std::numeric_limits<double>::epsilon();
+      exact_floor_ += static_cast<double>(k) * (r.x[k] * r.x[k] + r.y[k] * r.y[k] + r.theta[k] * r.theta[k]);
+  constexpr double kUnit = 2 * std::numeric_limits<double>::epsilon();
+  exact_floor_ *= kUnit * kUnit;
   structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
 }
 
@@ -69,6 +70,10 @@ CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept
 
 double CalibrationProblem::cost(const ConstVectorRef& z) const {
   return std::max(structure_->cost(z), 0.0);  // not-a-number stays
+}
+
+double CalibrationProblem::rounding_floor(const ConstVectorRef& z) const {
+  return exact_floor_ + 2 * std::sqrt(exact_floor_ * cost(z));
 }
 
 void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {

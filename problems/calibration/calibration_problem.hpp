@@ -64,9 +64,9 @@ class CalibrationProblem {
   void residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const;
   void normal_equations(const ConstVectorRef& z, NormalEquations& out) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
-  // The structured form takes sums of squares of poses from each other: eps / 4 sum (x^2 + y^2 + theta^2) over the references is what
-  // that may leave of a cost of zero. A cost below zero is one.
-  double rounding_floor(const ConstVectorRef&) const { return rounding_floor_; }
+  // F + 2 sqrt(F J(z)), F = (2 eps)^2 sum k (x_k^2 + y_k^2 + theta_k^2) over the references: k additions leave an error of about
+  // 2 eps sqrt(k) |x_k| in a pose. Sums of squares only: what is left never exceeds that of the equations as written.
+  double rounding_floor(const ConstVectorRef& z) const;
 
   const std::vector<Recording>& recordings() const { return recordings_; }
   InstructionSet kernel() const { return kernel_; }
@@ -79,7 +79,7 @@ class CalibrationProblem {
   std::vector<ParameterInfo> parameters_;
   std::vector<Recording> recordings_;
   InstructionSet kernel_;
-  double rounding_floor_ = 0;
+  double exact_floor_ = 0;  // F
   std::unique_ptr<Structure> structure_;
 };
 

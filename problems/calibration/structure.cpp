@@ -1,5 +1,6 @@
 #include "problems/calibration/structure.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +37,52 @@ HeadingVector heading_increment(const HeadingVector& cs) {
   return f;
 }
 
+// Collects the rows (F, F h0 - turned) of HeadingForm. The sums over a recording have more digits than the factor.
+class HeadingSums {
+ public:
+  explicit HeadingSums(const HeadingVector& origin) : origin_(origin.cast<long double>()) { rows_.setZero(); }
+
+  void add(const Recording& recording, const Increments& list) {
+    Eigen::Matrix<long double, kHeading, 1> f = decltype(f)::Zero();
+    for (Eigen::Index k = 0; k < list.cols(); ++k) {
+      f += heading_increment(list.col(k)).cast<long double>();
+      const long double turned = static_cast<long double>(recording.theta[static_cast<std::size_t>(k) + 1]) -
+                                 static_cast<long double>(recording.theta[0]);
+      if (filled_ == kRows) reduce();
+      rows_.row(filled_++) << f.transpose().cast<double>(), static_cast<double>(f.dot(origin_) - turned);
+    }
+  }
+
+  HeadingForm form() {
+    reduce();
+    const HeadingMatrix r = rows_.topLeftCorner<kHeading, kHeading>();
+    HeadingForm form;
+    form.origin = origin_.cast<double>();
+    form.r = r;
+    form.q = rows_.col(kHeading).head<kHeading>();
+    form.a = r.transpose() * r;
+    form.rest = rows_(kHeading, kHeading) * rows_(kHeading, kHeading);
+    return form;
+  }
+
+ private:
+  static constexpr Eigen::Index kColumns = kHeading + 1, kRows = 512;
+  using Rows = Eigen::Matrix<double, kRows, kColumns>;
+
+  // Replaces the rows by their triangular factor.
+  void reduce() {
+    const Eigen::HouseholderQR<Rows> qr(rows_);
+    const Rows factor = qr.matrixQR().triangularView<Eigen::Upper>();
+    rows_.setZero();
+    rows_.topRows<kColumns>() = factor.topRows<kColumns>();
+    filled_ = kColumns;
+  }
+
+  Eigen::Matrix<long double, kHeading, 1> origin_;
+  Rows rows_;
+  Eigen::Index filled_ = kColumns;
+};
+
 }  // namespace
 
 LinearVector linear_parameters(const ConstVectorRef& z) {
@@ -67,9 +114,7 @@ LinearMatrix linear_jacobian(const ConstVectorRef& z) {
 CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordings,
                                            const ConstVectorRef& nominal, InstructionSet kernel)
     : kernel_(kernel::select(kernel)) {
-  heading_.origin = linear_parameters(nominal).tail<kHeading>();
-  heading_.a.setZero();
-  heading_.b.setZero();
+  HeadingSums heading(linear_parameters(nominal).tail<kHeading>());
   std::size_t samples = 0;
   for (const Recording& recording : recordings) samples += recording.size() - 1;
   data_.reserve(samples * kStreams);
@@ -77,8 +122,9 @@ CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordi
     const Increments steps = increments_of(recording);
     largest_step_ = largest_step_.cwiseMax(steps.cwiseAbs().rowwise().maxCoeff());
     plan_recording(recording, steps);
-    add_heading(recording, steps);
+    heading.add(recording, steps);
   }
+  heading_ = heading.form();
 }
 
 void CalibrationStructure::plan_recording(const Recording& recording, const Increments& list) {
@@ -114,31 +160,18 @@ void CalibrationStructure::plan_recording(const Recording& recording, const Incr
   plans_.push_back(std::move(plan));
 }
 
-void CalibrationStructure::add_heading(const Recording& recording, const Increments& list) {
-  // (F, e) stacked: one rank-1 update per sample gives A, b and c.
-  using Stacked = Eigen::Matrix<double, kHeading + 1, 1>;
-  Eigen::Matrix<double, kHeading + 1, kHeading + 1> sum = decltype(sum)::Zero();
-  HeadingVector f = HeadingVector::Zero();
-  for (Eigen::Index k = 0; k < list.cols(); ++k) {
-    f += heading_increment(list.col(k));
-    const double turned = recording.theta[static_cast<std::size_t>(k) + 1] - recording.theta[0];
-    Stacked v;
-    v << f, f.dot(heading_.origin) - turned;
-    sum += v * v.transpose();
-  }
-  heading_.a += sum.topLeftCorner<kHeading, kHeading>();
-  heading_.b += sum.topRightCorner<kHeading, 1>();
-  heading_.c += sum(kHeading, kHeading);
-}
-
 bool CalibrationStructure::needs_exact_rotation(const LinearVector& s) const {
   // Written so that NaN parameters take the exact form too.
   return !(s.tail<kHeading>().cwiseAbs().dot(largest_step_) <= kernel::kMaxAngle);
 }
 
+HeadingVector CalibrationStructure::heading_residual(const LinearVector& s) const {
+  return heading_.r.triangularView<Eigen::Upper>() * HeadingVector(s.tail<kHeading>() - heading_.origin) +
+         heading_.q;
+}
+
 double CalibrationStructure::heading_cost(const LinearVector& s) const {
-  const HeadingVector d = s.tail<kHeading>() - heading_.origin;
-  return d.dot(heading_.a * d) + 2.0 * heading_.b.dot(d) + heading_.c;
+  return heading_residual(s).squaredNorm() + heading_.rest;
 }
 
 double CalibrationStructure::recording_cost(const RecordingPlan& plan, const LinearVector& s,
@@ -241,7 +274,7 @@ void CalibrationStructure::normal_equations(const ConstVectorRef& z, NormalEquat
   LinearMatrix jtj = LinearMatrix::Zero();
   for (const RecordingPlan& plan : plans_) add_normal(plan, s, exact, cost, jtr, jtj);
   jtj.triangularView<Eigen::StrictlyUpper>() = jtj.transpose();
-  jtr.tail<kHeading>() += heading_.a * (s.tail<kHeading>() - heading_.origin) + heading_.b;
+  jtr.tail<kHeading>() += heading_.r.transpose().triangularView<Eigen::Lower>() * heading_residual(s);
   jtj.bottomRightCorner<kHeading, kHeading>() += heading_.a;
   const LinearMatrix d = linear_jacobian(z);
   out.cost = cost;

@@ -18,12 +18,14 @@ using HeadingMatrix = Eigen::Matrix<double, kernel::kHeading, kernel::kHeading>;
 LinearVector linear_parameters(const ConstVectorRef& z);
 LinearMatrix linear_jacobian(const ConstVectorRef& z);
 
-// Sum over all samples of the squared heading error, a constant quadratic form in h = (P, Q):
-//     (h - h0)' A (h - h0) + 2 b'(h - h0) + c,  expanded about the nominal h0, where little cancels.
+// Sum over all samples of the squared heading error, a constant quadratic form in h = (P, Q), kept as a sum of squares:
+//     |R (h - h0) + q|^2 + rest,  [R q; 0 sqrt(rest)] = triangular factor of [F, F h0 - turned],
+// F = dtheta/dh of every sample, h0 the nominal. Expanded as (h - h0)' F'F (h - h0) + ... it would lose half of the digits near
+// exact data; this way it loses those of the parameters only, and is never negative.
 struct HeadingForm {
-  HeadingVector origin, b;
-  HeadingMatrix a;
-  double c = 0;
+  HeadingVector origin, q;
+  HeadingMatrix r, a;  // upper triangle, R'R
+  double rest = 0;
 };
 
 // Segments of a recording in time order; `width` of them form a block. The last few increments form one of width 1.
@@ -56,12 +58,13 @@ class CalibrationStructure {
  private:
   // True when a step could turn further than the rotation polynomial holds.
   bool needs_exact_rotation(const LinearVector& s) const;
+  // R (h - h0) + q
+  HeadingVector heading_residual(const LinearVector& s) const;
   double heading_cost(const LinearVector& s) const;
   double recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const;
   void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost,
                   LinearVector& jtr, LinearMatrix& jtj) const;
   void plan_recording(const Recording& recording, const Increments& list);
-  void add_heading(const Recording& recording, const Increments& list);
 
   kernel::Kernel kernel_;
   HeadingForm heading_;
