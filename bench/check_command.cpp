@@ -1,6 +1,7 @@
 #include "bench/check_command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <set>
@@ -10,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/files.hpp"
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/records.hpp"
 #include "bench/table_output.hpp"
@@ -35,7 +37,9 @@ std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
   }
   if (repeated > 0)
     note(fmt::format("{} record{} read twice and counted once", repeated, repeated == 1 ? " was" : "s were"));
-  if (records.empty()) throw DataError("no run record in what was given");
+  if (records.empty())
+    throw DataError(fmt::format("{}: found no run record, expected at least one",
+                                shown(fmt::format("{}", fmt::join(runs, ", ")))));
   return records;
 }
 

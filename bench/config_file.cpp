@@ -140,6 +140,7 @@ std::vector<ConfigEntry> read_config(const std::string& path) {
   } catch (const DataError& e) {  // options are usage
     throw std::invalid_argument(e.what());
   }
+  if (text.rfind("\xef\xbb\xbf", 0) == 0) text.erase(0, 3);  // a byte order mark
   const auto first = text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && text[first] == '{' ? from_json(path, text) : from_ini(path, text);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "base/error.hpp"
 #include "bench/system_file.hpp"
 #include "bench/table_output.hpp"
 #include "reports/table.hpp"
@@ -141,8 +142,14 @@ ExitCode discretise_command(const DiscretiseOptions& options) {
   const Format format = parse_format(options.format);
   const SystemFile file = read_system(options.system);
   std::optional<SeriesDiscretisation> series;
-  if (options.order) series = discretise_series(file.system, options.period, *options.order);
-  const Discretisation d = series ? series->value : discretise(file.system, options.period);
+  Discretisation d;
+  try {
+    if (options.order) series = discretise_series(file.system, options.period, *options.order);
+    d = series ? series->value : discretise(file.system, options.period);
+  } catch (const std::invalid_argument&
+               e) {  // the system is checked, the period a positive number: the result overflows
+    throw DataError(fmt::format("{}: {}", options.system, e.what()));
+  }
   const SeriesDiscretisation* errors = series ? &*series : nullptr;
   if (format == Format::Latex) {
     print_text(latex_text(file, options, d, errors));

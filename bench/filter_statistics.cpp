@@ -85,7 +85,7 @@ void NoiseMeter::report(std::map<std::string, double>& statistics) const {
         statistics[fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, kNoiseStages[stage])] = value;
       };
       put("rms", std::sqrt(errors.square.mean()));
-      put("ratio", errors.magnitude.mean() / truth_[c].mean());
+      if (truth_[c].mean() > 0) put("ratio", errors.magnitude.mean() / truth_[c].mean());
       put("max", errors.magnitude.max());
     }
   for (std::size_t stage = 0; stage < 3; ++stage) {

@@ -119,7 +119,7 @@ std::string option_suggestion(const CLI::App& app, const std::string& typed) {
     for (const std::string& name : option->get_lnames()) names.push_back(name);
   const auto begin = std::min(typed.find_first_not_of('-'), typed.size());
   const std::string near = nearest_name(typed.substr(begin, typed.find('=') - begin), names);
-  if (near.empty()) return {};
+  if (near.empty() || near == typed) return {};
   return fmt::format(", did you mean '{}{}'?", begin > 0 ? "--" : "", near);
 }
 

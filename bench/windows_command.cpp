@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/stop.hpp"
+#include "base/text.hpp"
 #include "bench/cells.hpp"
 #include "bench/context.hpp"
 #include "bench/interrupt.hpp"
@@ -67,7 +68,7 @@ void require_finite(const std::vector<EntropyWindow>& windows, const std::string
   }
 }
 
-LoadedWindow load(const EntropyWindow& window) {
+LoadedWindow loaded_window(const EntropyWindow& window) {
   LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", "", ""}};
   const BlockQuadratic& cost = *w.loaded.problem.block_quadratic();
   EntropyState state;
@@ -76,6 +77,14 @@ LoadedWindow load(const EntropyWindow& window) {
   w.exact = optimum(window, cost, *ternary_branch_and_bound(cost.blocks, stop));
   w.relaxed = optimum(window, cost, *box_relaxation(cost.blocks));
   return w;
+}
+
+LoadedWindow load(const EntropyWindow& window, const std::string& file) {
+  try {
+    return loaded_window(window);
+  } catch (const std::invalid_argument& e) {  // of the quadratic form, which knows no file
+    throw DataError(fmt::format("{}: window '{}': {}", file, shown(window.id), e.what()));
+  }
 }
 
 void add_statistics(const LoadedWindow& w, const Vector& t, RunRecord& record) {
@@ -234,7 +243,7 @@ ExitCode windows_command(const WindowsOptions& options) {
   });
   std::vector<RunRecord> records;
   for (std::size_t i = 0; i < windows.size() && !InterruptGuard::flag().load(); ++i) {
-    const LoadedWindow window = load(windows[i]);
+    const LoadedWindow window = load(windows[i], options.file);
     if (InterruptGuard::flag().load()) break;  // what results are measured against is not known
     plan.dataset = stem + "/" + windows[i].id;
     const CellList cells = plan_cells(plan, ignored);

@@ -10,6 +10,11 @@
 namespace odobench {
 namespace {
 
+// Empty where a difference of finite numbers overflows.
+Cell finite_cell(double value, int digits) {
+  return std::isfinite(value) ? significant_cell(value, digits) : Cell{};
+}
+
 class Check {
  public:
   Check() {
@@ -85,8 +90,8 @@ class Check {
     if (both ? std::abs(found - expected) <= tolerance : std::isfinite(expected) == std::isfinite(found))
       return;
     add("moved", cell, significant_cell(expected, 10), significant_cell(found, 10), true);
-    if (both) report_.table.rows.back()[6] = significant_cell(found - expected, 3);
-    report_.table.rows.back()[7] = significant_cell(tolerance, 3);
+    if (both) report_.table.rows.back()[6] = finite_cell(found - expected, 3);
+    report_.table.rows.back()[7] = finite_cell(tolerance, 3);
   }
 
   // null in the file is a run without a result.
@@ -159,7 +164,7 @@ class Check {
       label_ = s.label;
       add("moved", fmt::format("{}, median (p = {:.2g})", s.cell, adjusted[i]),
           significant_cell(s.expected, 10), significant_cell(s.found, 10), true);
-      if (both) report_.table.rows.back()[6] = significant_cell(s.found - s.expected, 3);
+      if (both) report_.table.rows.back()[6] = finite_cell(s.found - s.expected, 3);
       report_.table.rows.back()[7] = significant_cell(s.tolerance, 3);
     }
     if (samples_.empty()) return;

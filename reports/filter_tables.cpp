@@ -11,7 +11,7 @@ namespace {
 
 std::optional<double> figure(const RunRecord& record, const std::string& name) {
   const auto found = record.statistics.find(name);
-  if (found == record.statistics.end()) return std::nullopt;
+  if (found == record.statistics.end() || !std::isfinite(found->second)) return std::nullopt;
   return found->second;
 }
 

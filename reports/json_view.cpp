@@ -97,6 +97,12 @@ std::int64_t JsonView::integer() const {
   return value_->get<std::int64_t>();
 }
 
+std::int64_t JsonView::count() const {
+  const std::int64_t value = integer();
+  if (value < 0) fail("an integer >= 0");
+  return value;
+}
+
 std::uint64_t JsonView::unsigned_integer() const {
   const bool negative =
       value_->is_number_integer() && !value_->is_number_unsigned() && value_->get<std::int64_t>() < 0;

@@ -30,6 +30,7 @@ class JsonView {
   double number() const;  // null, which is how JSON has to store what is not finite, gives not-a-number
   std::optional<double> optional_number() const;  // null gives none
   std::int64_t integer() const;
+  std::int64_t count() const;  // an integer >= 0
   std::uint64_t unsigned_integer() const;
   int small_integer() const;
 

@@ -64,7 +64,7 @@ json to_json(const TracePoint& point) {
 }
 
 TracePoint trace_point_from(const JsonView& view) {
-  return {view.at("evaluations").integer(), view.at("seconds").number(), view.at("cost").number()};
+  return {view.at("evaluations").count(), view.at("seconds").number(), view.at("cost").number()};
 }
 
 json to_json(const OptimalityRecord& c) {
@@ -76,7 +76,7 @@ json to_json(const OptimalityRecord& c) {
 
 OptimalityRecord check_from(const JsonView& view) {
   return {view.at("test").string(), view.at("value").number(), view.at("limit").number(),
-          view.at("evaluations").integer()};
+          view.at("evaluations").count()};
 }
 
 json to_json(const KnownAnswer& k) {
@@ -159,11 +159,11 @@ void read_outcome(const JsonView& view, RunRecord& r) {
     r.parameters.push_back(parameter_from(item));
   });
   view.at("errors").each_item([&](const JsonView& item) { r.errors.push_back(error_from(item)); });
-  r.evaluations = view.at("evaluations").integer();
-  r.cost_evaluations = view.at("cost_evaluations").integer();
-  r.derivative_evaluations = view.at("derivative_evaluations").integer();
-  r.non_finite = view.at("non_finite").integer();
-  r.iterations = view.at("iterations").integer();
+  r.evaluations = view.at("evaluations").count();
+  r.cost_evaluations = view.at("cost_evaluations").count();
+  r.derivative_evaluations = view.at("derivative_evaluations").count();
+  r.non_finite = view.at("non_finite").count();
+  r.iterations = view.at("iterations").count();
   r.seconds = view.at("seconds").number();
   view.at("trace").each_item([&](const JsonView& item) { r.trace.push_back(trace_point_from(item)); });
   if (const auto notes = view.find("notes"))  // absent in records of other makers: none

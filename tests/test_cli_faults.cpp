@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <functional>
+#include <thread>
 
 #include "reports/record.hpp"
 #include "tests/support/entropy_windows.hpp"
@@ -41,6 +43,10 @@ const std::string& prepared() {
     EXPECT_EQ(testing::run_bench({"--solver=lm", "--out=" + run, "--quiet"}).exit_code, 0);
     EXPECT_EQ(testing::run_bench({"simulate", "--scenario=filter_run", "--out=" + drive}).exit_code, 0);
     folder.file("windows.json", testing::windows_json());
+    EXPECT_EQ(testing::run_bench({"simulate", "--scenario=vitko2024", "--raw", "--quiet",
+                                  "--out=" + (folder / "raw").string()})
+                  .exit_code,
+              0);
     return folder.path().string();
   }();
   return path;
@@ -93,6 +99,11 @@ const std::vector<Verb> kVerbs = {
     {"demo",
      [](const std::string& out) -> Words {
        return {"demo", "--out=" + out};
+     }},
+    {"import",
+     [](const std::string& out) -> Words {
+       return {"import", "vitko2024", "--from=" + prepared() + "/raw", "--quiet",
+               "--out=" + out + "/set.json"};
      }},
     {"simulate",
      [](const std::string& out) -> Words {
@@ -232,6 +243,45 @@ TEST_P(CliFaults, AKilledProcessLeavesWholeFilesAndANewOneMakesTheRest) {
       for (const std::string& name : files_below(out))
         if (name.find(".tmp-") == std::string::npos) names.push_back(name);
       EXPECT_EQ(names, whole_);
+    }
+}
+
+// Whatever the moment: what is complete is kept and said, the rest is not there.
+TEST_P(CliFaults, ASignalAtAnyMomentLosesNothing) {
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(Process(bench_words(words(folder_ / "timed", false))).wait().exit_code, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
+  constexpr int kMoments = 5;
+  for (const int signal : {SIGTERM, SIGHUP, SIGINT, SIGKILL})
+    for (int i = 0; i < kMoments; ++i) {
+      const fs::path out = folder_ / "out";
+      fs::remove_all(out);
+      Process process(bench_words(words(out, false)));
+      std::this_thread::sleep_for(whole * (0.1 + i) / kMoments);
+      process.send(signal);
+      const ProcessResult result = process.wait();
+      SCOPED_TRACE("signal " + std::to_string(signal) + " at " + std::to_string(i) + ": " + result.err);
+      expect_whole_records(out);
+      const std::vector<std::string> names = files_below(out);
+      if (signal == SIGKILL) {
+        EXPECT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.exit_code;
+        EXPECT_EQ(Process(bench_words(words(out, GetParam().name != "check"))).wait().exit_code, 0);
+        continue;
+      }
+      // Before main() a signal has its default effect.
+      const bool early = result.signal == signal && names.empty();
+      EXPECT_TRUE(early || result.exit_code == 0 || result.exit_code == 130)
+          << result.signal << " " << result.exit_code;
+      EXPECT_FALSE(has_temporary(names));
+      if (result.exit_code == 0) {
+        EXPECT_EQ(names, whole_);
+      }
+      if (result.exit_code == 130 && !GetParam().records && GetParam().name != "filter") {
+        EXPECT_TRUE(names.empty() || names == whole_) << ::testing::PrintToString(names);
+      }
+      if (result.exit_code == 130 && fs::exists(out / "runs.jsonl")) {
+        EXPECT_TRUE(fs::exists(out / "tables.json"));
+      }
     }
 }
 

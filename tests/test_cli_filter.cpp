@@ -355,52 +355,6 @@ TEST(CliFilter, WrongUsage) {
                  {"none.csv", "cannot be read"});
 }
 
-std::vector<std::string> from_pipe(const std::string& pipe, const std::string& out) {
-  return {
-      "/bin/sh", "-c",
-      "exec '" + testing::bench_words({}).front() + "' filter --data=- --out='" + out + "' <'" + pipe + "'"};
-}
-
-TEST(CliFilter, CtrlCKeepsTheWindowsSoFar) {
-  const TemporaryFolder folder;
-  const std::string fifo = (folder / "fifo").string(), out = (folder / "out.csv").string();
-  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  Process process(from_pipe(fifo, out));
-  std::ofstream writer(fifo);  // waits for the reader
-  writer << plain_run(2000) << std::flush;
-  // The temporary file shows that windows were written.
-  bool begun = false;
-  for (int i = 0; i < 3000 && !begun; ++i) {
-    for (const std::string& name : everything_in(folder.path()))
-      begun = begun || (name.rfind("out.csv.tmp", 0) == 0 && content(folder / name).size() > 100000);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ASSERT_TRUE(begun);
-  process.send(SIGINT);
-  const ProcessResult result = process.wait();
-  EXPECT_EQ(result.exit_code, kInterrupted) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("interrupted after"));
-  EXPECT_THAT(result.out, HasSubstr("windows"));
-  const std::vector<Row> rows = csv(out);
-  EXPECT_GT(rows.size(), 100u);
-  EXPECT_EQ(rows.back().size(), rows.front().size());
-  EXPECT_EQ(rows.back()[0], std::to_string(rows.size() - 2));
-  EXPECT_EQ(everything_in(folder.path()), (std::vector<std::string>{"fifo", "out.csv"}));
-}
-
-TEST(CliFilter, CtrlCBeforeTheFirstWindow) {
-  const TemporaryFolder folder;
-  const std::string fifo = (folder / "fifo").string();
-  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  Process process(from_pipe(fifo, (folder / "out.csv").string()));
-  std::ofstream writer(fifo);
-  writer << plain_run(5) << std::flush;
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  process.send(SIGTERM);
-  EXPECT_EQ(process.wait().exit_code, kInterrupted);
-  EXPECT_EQ(everything_in(folder.path()), std::vector<std::string>{"fifo"});
-}
-
 // The series that an independent transcription of the thesis' program gives, cell by cell.
 void expect_series(const std::string& solver, const std::string& expected, bool compare_iterations) {
   const TemporaryFolder folder;

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Fuzzes the readers of all formats, or of those named: builds with clang's address and undefined-behaviour sanitizers and libFuzzer
+# (Debian packages clang-19 and libclang-rt-19-dev, installed when missing), runs each for a while, keeps what it found.
+#
+# usage: scripts/fuzz.sh [-t SECONDS] [FORMAT...]      SECONDS of each format (default: 60)
+#
+# Inputs that reach something new are collected in build/fuzz/corpus/FORMAT, findings in build/fuzz/findings/FORMAT-*. Exit code 1 when
+# there is a finding. Inputs worth keeping go to tests/fuzz/corpus/FORMAT, which every test run goes through.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+seconds=60
+while getopts t: option; do
+  case $option in
+    t) seconds=$OPTARG ;;
+    *) sed -n '2,/^set /{/^#/s/^# \{0,1\}//p}' "$0" >&2 && exit 2 ;;
+  esac
+done
+shift $((OPTIND - 1))
+
+build=$root/build/fuzz
+ODOBENCH_EXTRA_PACKAGES='clang-19 libclang-rt-19-dev' CXX=clang++-19 "$root/scripts/setup.sh" fuzz fuzz_formats
+target=$build/tests/fuzz_formats
+if (($# == 0)); then
+  mapfile -t formats < <(sed -n 's/^      {"\([a-z]*\)",.*/\1/p' "$root/tests/support/formats.cpp")
+  set -- "${formats[@]}"
+fi
+export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
+status=0
+mkdir -p "$build/findings"
+for format in "$@"; do
+  corpus=$build/corpus/$format
+  mkdir -p "$corpus"
+  ODOBENCH_FUZZ=$format "$target" --examples="$corpus"
+  kept=()
+  [[ -d $root/tests/fuzz/corpus/$format ]] && kept=("$root/tests/fuzz/corpus/$format")
+  log=$build/findings/$format.log
+  if ODOBENCH_FUZZ=$format "$target" "$corpus" "${kept[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 \
+    -artifact_prefix="$build/findings/$format-" -print_final_stats=1 >"$log" 2>&1; then
+    printf '%-14s %9s executions, nothing found\n' "$format" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"
+  else
+    printf '%-14s a finding: %s\n' "$format" "$log"
+    status=1
+  fi
+done
+exit $status

@@ -1,0 +1,281 @@
+#include "tests/support/formats.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <regex>
+#include <stdexcept>
+
+#include "base/sha256.hpp"
+#include "base/text.hpp"
+#include "datasets/dataset.hpp"
+#include "datasets/recording_file.hpp"
+#include "datasets/robot_4wis4wid.hpp"
+#include "tests/support/entropy_windows.hpp"
+#include "tests/support/filter_run_files.hpp"
+#include "tests/support/in_process.hpp"
+#include "tests/support/source_dir.hpp"
+#include "tests/support/synthetic_recording.hpp"
+
+namespace odobench::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSamples = 12;
+
+Dataset tiny_dataset() {
+  Dataset d;
+  d.name = "tiny";
+  d.robot = robot_4wis4wid();
+  d.trajectories = {{"synthetic", "made up"}};
+  d.recordings = {synthetic_recording(kSamples, 0.05, 1), synthetic_recording(kSamples, 0.05, 2)};
+  d.known_parameters = {{"truth", "", {}}};
+  for (const RobotParameter& p : d.robot.parameters) d.known_parameters[0].values.push_back(p.nominal);
+  return d;
+}
+
+// Made once: examples of formats that only the program writes.
+const TemporaryFolder& prepared() {
+  static const TemporaryFolder folder;
+  static const bool made = [] {
+    const auto run = [](Words words) {
+      const ProcessResult result = bench_in_process(words);
+      if (result.exit_code != 0) throw std::runtime_error("cannot prepare examples: " + result.err);
+    };
+    save_dataset(tiny_dataset(), folder / "set.json", true);
+    save_dataset(tiny_dataset(), folder / "files.json");
+    run({"--data=" + (folder / "set.json").string(), "--solver=lm,ga", "--max-evals=50", "--repeat=2",
+         "--quiet", "--out=" + (folder / "run").string()});
+    run({"check", "--update", "--baseline=" + (folder / "baseline.json").string(),
+         (folder / "run").string()});
+    run({"simulate", "--raw", "--scenario=vitko2024", "--quiet", "--out=" + (folder / "raw").string()});
+    return true;
+  }();
+  (void)made;
+  return folder;
+}
+
+std::string prepared_file(const std::string& name) {
+  return content(prepared() / name);
+}
+
+std::string first_lines(const std::string& text, std::size_t count) {
+  std::string out;
+  for (const std::string& line : lines(text))
+    if (count-- > 0)
+      out += line + "\n";
+    else
+      break;
+  return out;
+}
+
+std::string source_file(const std::string& name) {
+  return content(source_dir() / "datasets" / name);
+}
+
+std::string out(const TemporaryFolder& folder, const std::string& name) {
+  return (folder / "out").string() + "/" + name;
+}
+
+std::vector<Words> read_filter(const std::string& data, const std::string& truth,
+                               const TemporaryFolder& folder) {
+  Words words{"filter", "--data=" + folder.file("run.csv", data), "--quiet",
+              "--out=" + out(folder, "filtered.csv"), "--overwrite"};
+  if (!truth.empty()) words.push_back("--truth=" + folder.file("truth.csv", truth));
+  return {words};
+}
+
+std::vector<Words> read_raw(const std::string& capture, const std::string& wheels,
+                            const TemporaryFolder& folder) {
+  fs::create_directories(folder / "raw");
+  folder.file("raw/abs_1.csv", capture);
+  folder.file("raw/odom_1.csv", wheels);
+  return {{"import", "vitko2024", "--from=" + (folder / "raw").string(), "--out=" + out(folder, "set.json"),
+           "--overwrite", "--quiet"}};
+}
+
+// A run directory whose file `name` has these bytes.
+std::string run_directory(const std::string& name, const std::string& bytes, const TemporaryFolder& folder) {
+  if (!fs::exists(folder / "run")) fs::copy(prepared() / "run", folder / "run", fs::copy_options::recursive);
+  folder.file("run/" + name, bytes);
+  return (folder / "run").string();
+}
+
+std::vector<Words> read_scenario(const std::string& bytes, const TemporaryFolder& folder) {
+  const std::string file = folder.file("scenario.json", bytes);
+  return {{"list", "scenarios", file},
+          {"simulate", "--scenario=" + file, "--threads=1", "--quiet", "--overwrite",
+           "--out=" + out(folder, "drive")}};
+}
+
+std::vector<Format> make_formats() {
+  using Files = const TemporaryFolder&;
+  using Bytes = const std::string&;
+  using Commands = std::vector<Words>;
+  return {
+      {"set",
+       [] {
+         return std::vector<std::string>{prepared_file("set.json"), prepared_file("files.json")};
+       },
+       [](Bytes b, Files f) -> Commands {
+         if (!fs::exists(f / "files_recordings"))
+           fs::copy(prepared() / "files_recordings", f / "files_recordings", fs::copy_options::recursive);
+         const std::string file = f.file("set.json", b);
+         return {{"evaluate", "--data=" + file, "--out=" + out(f, "run"), "--overwrite"},
+                 {"list", "data", file}};
+       }},
+      {"recording", [] { return std::vector<std::string>{encode_recording(tiny_dataset().recordings[0])}; },
+       [](Bytes b, Files f) -> Commands {
+         Dataset d = tiny_dataset();
+         d.recordings.resize(1);
+         save_dataset(d, f / "set.json");
+         std::string set = content(f / "set.json");
+         const std::string good = sha256(encode_recording(d.recordings[0]));
+         set.replace(set.find(good), good.size(), sha256(b));
+         f.file("set.json", set);
+         f.file("set_recordings/" + d.recordings[0].id + ".rec", b);
+         return {{"evaluate", "--data=" + (f / "set.json").string()}};
+       }},
+      {"parameters",
+       [] {
+         std::string text;
+         for (const RobotParameter& p : robot_4wis4wid().parameters)
+           text += (text.empty() ? "{\"" : ", \"") + p.name + "\": " + std::to_string(p.nominal);
+         return std::vector<std::string>{text + ", \"name\": \"mine\"}", "[" + text + "}]"};
+       },
+       [](Bytes b, Files f) -> Commands {
+         return {{"evaluate", "--data=" + (prepared() / "set.json").string(),
+                  "--parameters=" + f.file("p.json", b)}};
+       }},
+      {"capture", [] { return std::vector<std::string>{first_lines(prepared_file("raw/abs_1.csv"), 50)}; },
+       [](Bytes b, Files f) -> Commands {
+         return read_raw(b, first_lines(prepared_file("raw/odom_1.csv"), 50), f);
+       }},
+      {"wheels", [] { return std::vector<std::string>{first_lines(prepared_file("raw/odom_1.csv"), 50)}; },
+       [](Bytes b, Files f) -> Commands {
+         return read_raw(first_lines(prepared_file("raw/abs_1.csv"), 50), b, f);
+       }},
+      {"filter", [] { return std::vector<std::string>{CircleRun().data()}; },
+       [](Bytes b, Files f) -> Commands { return read_filter(b, "", f); }},
+      {"truth", [] { return std::vector<std::string>{CircleRun().truth()}; },
+       [](Bytes b, Files f) -> Commands { return read_filter(CircleRun().data(), b, f); }},
+      {"windows", [] { return std::vector<std::string>{windows_json()}; },
+       [](Bytes b, Files f) -> Commands {
+         return {{"windows", f.file("w.json", b), "--solver=coordinate", "--quiet", "--threads=1"}};
+       }},
+      {"scenario",
+       [] {
+         return std::vector<std::string>{source_file("scenarios/exact.json"),
+                                         source_file("scenarios/rich.json")};
+       },
+       read_scenario},
+      {"dynamics", [] { return std::vector<std::string>{source_file("scenarios/filter_run.json")}; },
+       read_scenario},
+      {"sensors", [] { return std::vector<std::string>{source_file("sensors/heading_only.json")}; },
+       [](Bytes b, Files f) -> Commands {
+         return {{"fuse", "--data=" + (prepared() / "set.json").string(), "--sensors=" + f.file("s.json", b),
+                  "--filter=ekf", "--threads=1"}};
+       }},
+      {"system",
+       [] {
+         return std::vector<std::string>{source_file("systems/constant_acceleration.json"),
+                                         source_file("systems/turn3d.json")};
+       },
+       [](Bytes b, Files f) -> Commands {
+         return {{"discretise", "--system=" + f.file("s.json", b), "--period=0.1"}};
+       }},
+      {"records", [] { return std::vector<std::string>{prepared_file("run/runs.jsonl")}; },
+       [](Bytes b, Files f) -> Commands {
+         const std::string file = f.file("runs.jsonl", b);
+         return {{"report", file},
+                 {"report", file, "--out=" + out(f, "r.html"), "--overwrite"},
+                 {"compare", (prepared() / "run").string(), file}};
+       }},
+      {"tracks", [] { return std::vector<std::string>{prepared_file("run/tracks/tracks.json")}; },
+       [](Bytes b, Files f) -> Commands {
+         return {{"export", run_directory("tracks/tracks.json", b, f), "--tum", "--overwrite",
+                  "--out=" + out(f, "tum")}};
+       }},
+      {"array", [] { return std::vector<std::string>{prepared_file("run/tracks/1.npy")}; },
+       [](Bytes b, Files f) -> Commands {
+         return {{"export", run_directory("tracks/1.npy", b, f), "--tum", "--overwrite",
+                  "--out=" + out(f, "tum")}};
+       }},
+      {"baseline", [] { return std::vector<std::string>{prepared_file("baseline.json")}; },
+       [](Bytes b, Files f) -> Commands {
+         return {{"check", "--baseline=" + f.file("b.json", b), (prepared() / "run").string()}};
+       }},
+      {"configuration",
+       [] {
+         return std::vector<std::string>{
+             "{\"solver\": [\"lm\", \"pso[swarm=20]\"], \"repeat\": 2, \"seed\": 7}",
+             "[run]\nsolver = [lm, \"ga[population=20]\"]\nrepeat = 2 # twice\n"};
+       },
+       [](Bytes b, Files f) -> Commands {
+         return {{"--config=" + f.file("c.json", b), "--problem=sphere", "--max-evals=40", "--time-limit=1",
+                  "--threads=1", "--quiet"}};
+       }},
+  };
+}
+
+bool unprintable(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint c = code_point_at(text, at);
+    const bool control =
+        (c.value < 0x20 && c.value != '\n' && c.value != '\r') || (c.value >= 0x7F && c.value < 0xA0);
+    if (!c.valid || control || (c.value >= 0x202A && c.value <= 0x202E)) return true;
+    at += c.bytes;
+  }
+  return false;
+}
+
+// The first line with nan or inf as a number, not as a part of a word.
+std::string not_finite(const std::string& text) {
+  static const std::regex number("(^|[^A-Za-z_])[-+]?(nan|inf)($|[^A-Za-z_])",
+                                 std::regex::icase | std::regex::optimize);
+  for (const std::string& line : lines(text))
+    if (line.size() < 10000 && std::regex_search(line, number)) return line;
+  return "";
+}
+
+// A name that has it is shown with it; null is how records store what is not finite.
+bool speaks_of_infinity(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text.find("nan") != std::string::npos || text.find("inf") != std::string::npos ||
+         text.find("null") != std::string::npos;
+}
+
+}  // namespace
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> list = make_formats();
+  return list;
+}
+
+const Format& format_called(const std::string& name) {
+  for (const Format& format : formats())
+    if (format.name == name) return format;
+  throw std::invalid_argument("no format is called " + name);
+}
+
+std::string complaint_about(const ProcessResult& result, const TemporaryFolder& folder,
+                            const std::string& input) {
+  if (result.signal != 0) return "ended by signal " + std::to_string(result.signal);
+  if (result.exit_code < 0 || result.exit_code > 3) return "exit code " + std::to_string(result.exit_code);
+  std::size_t said = 0;
+  for (const std::string& line : lines(result.err)) said += line.rfind("bench: error: ", 0) == 0 ? 1 : 0;
+  if (said != (result.exit_code >= 2 ? 1u : 0u)) return std::to_string(said) + " lines of error";
+  if (unprintable(result.out) || unprintable(result.err)) return "control characters or invalid UTF-8";
+  if (result.err.size() > 20000) return "messages of " + std::to_string(result.err.size()) + " bytes";
+  if (const std::string line = not_finite(result.out);
+      result.exit_code < 2 && !line.empty() && !speaks_of_infinity(input))
+    return "nan or inf among the results: " + line;
+  for (const std::string& name : files_below(folder / "out"))
+    if (name.find(".tmp-") != std::string::npos) return "left " + name;
+  if (result.exit_code >= 2 && fs::exists(folder / "out")) return "left an output after an error";
+  return "";
+}
+
+}  // namespace odobench::testing
