@@ -78,7 +78,9 @@ InterruptGuard::InterruptGuard() {
 }
 
 InterruptGuard::~InterruptGuard() {
-  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &previous[i], nullptr);
+  phase.store(Phase::Remembered);
+  for (std::size_t i = 0; i < kSignals.size(); ++i)
+    if (previous[i].sa_handler != SIG_DFL) ::sigaction(kSignals[i], &previous[i], nullptr);
 }
 
 void InterruptGuard::remember() {

@@ -9,7 +9,8 @@ namespace odobench {
 
 // While one lives, SIGINT, SIGTERM and SIGHUP end the process at once with ExitCode::Interrupted and the line of an
 // Interruption: from the first instruction of a verb on, whatever it computes or reads. A verb calls remember() before it
-// creates its first file. The previous handlers come back at the guard's end. One at a time. A SIGHUP that is ignored when
+// creates its first file. Handlers that others had set come back at the guard's end; the default ones do
+// not, since a program that is through should not be ended by a signal while it puts its things away. One at a time. A SIGHUP that is ignored when
 // the guard is made (nohup) stays ignored.
 class InterruptGuard {
  public:

@@ -64,13 +64,13 @@ TEST(CliLimits, QuantitiesOfAScenarioHaveLimits) {
       {recordings(R"(, "idle": {"before_s": [0, 1e12]})"),
        {"idle/before_s: found 0 to 1000000000000", "3600 s"}},
       {recordings(R"(, "odometry": {"stall_s": [0, 1e9]})"), {"odometry/stall_s", "60 s"}},
-      {recordings(R"(, "odometry": {"delay_s": 1e300})"), {"odometry/delay_s: found 1e+300", "60 s"}},
+      {recordings(R"(, "odometry": {"delay_s": 1e40})"), {"odometry/delay_s: found 1e+40", "60 s"}},
       {recordings(R"(, "capture": {"poll_s": 1e9})"), {"capture/poll_s: found 1000000000", "60 s"}},
       {recordings(R"(, "control": {"delay_s": 1e9})"), {"control/delay_s: found 1000000000", "60 s"}},
-      {recordings(R"(, "control": {"steering_rate_rad_s": 1e300})"), {"control/steering_rate_rad_s"}},
+      {recordings(R"(, "control": {"steering_rate_rad_s": 1e40})"), {"control/steering_rate_rad_s"}},
       {recordings(R"(, "start": {"position_m": 1e9})"), {"start/position_m: found 1000000000", "1000 m"}},
       {recordings(R"(, "robot": {"truth": {"r1": 1e-300}})"), {"robot/truth: r1 is 1e-300"}},
-      {recordings(R"(, "robot": {"truth": {"a1": 1e300}})"), {"robot/truth: wheel 1 stands at (1e+300"}},
+      {recordings(R"(, "robot": {"truth": {"a1": 1e40}})"), {"robot/truth: wheel 1 stands at (1e+40"}},
       {dynamics("1e9", "6", ""), {"segment 1: until_s is 1000000000, expected at most 86400 s"}},
       {dynamics("10", "1e9", ""), {"segment 1: the voltage of wheel 1 is 1000000000", "-1000 to 1000 V"}},
       {dynamics("10", "6", R"(, "output_step_s": 1e-9)"),
@@ -80,9 +80,9 @@ TEST(CliLimits, QuantitiesOfAScenarioHaveLimits) {
       {dynamics("10", "6", R"(, "integration": {"relative_tolerance": 1e-300})"),
        {"relative_tolerance is 1e-300"}},
       {dynamics("50", "6", R"(, "robot": {"inductance": 1e-8})"), {"inductance is 1e-08 H", "steps"}},
-      {dynamics("10", "6", R"(, "robot": {"mass": 1e200})"),
-       {"mass is 1e+200 kg, expected at most 1000000 kg"}},
-      {dynamics("10", "6", R"(, "noise": {"yaw_deg2": 1e200})"), {"yaw_deg2 is 1e+200"}},
+      {dynamics("10", "6", R"(, "robot": {"mass": 1e40})"),
+       {"mass is 1e+40 kg, expected at most 1000000 kg"}},
+      {dynamics("10", "6", R"(, "noise": {"yaw_deg2": 1e40})"), {"yaw_deg2 is 1e+40"}},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.text);
@@ -125,7 +125,7 @@ TEST(CliLimits, SensorsHaveLimits) {
     expect_refusal({"fuse", "--sensors=" + folder.file("s.json", text)}, kData, parts);
   };
   refused("\"rate_hz\":", "\"rate_hz\": 1e-300", {"/sensors/0/rate_hz: found 1e-300", "up to 100000 Hz"});
-  refused("\"rate_hz\":", "\"rate_hz\": 1e300", {"/sensors/0/rate_hz: found 1e+300", "up to 100000 Hz"});
+  refused("\"rate_hz\":", "\"rate_hz\": 1e40", {"/sensors/0/rate_hz: found 1e+40", "up to 100000 Hz"});
   refused("\"rate_hz\":", "\"rate_hz\": 1e5", {"measurements, expected at most 2e+07"});
   refused("\"sigma_heading\":", "\"sigma_heading\": 1e-300", {"sigma_heading: found 1e-300"});
 }
