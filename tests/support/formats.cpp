@@ -49,7 +49,6 @@ const TemporaryFolder& prepared() {
          "--quiet", "--out=" + (folder / "run").string()});
     run({"check", "--update", "--baseline=" + (folder / "baseline.json").string(),
          (folder / "run").string()});
-    run({"simulate", "--raw", "--scenario=vitko2024", "--quiet", "--out=" + (folder / "raw").string()});
     return true;
   }();
   (void)made;
@@ -68,6 +67,18 @@ std::string first_lines(const std::string& text, std::size_t count) {
     else
       break;
   return out;
+}
+
+// The first lines of a pair of raw files.
+std::string raw_file(const std::string& name) {
+  static const TemporaryFolder folder;
+  static const bool made = [] {
+    const Words words{"simulate", "--raw", "--scenario=vitko2024", "--quiet",
+                      "--out=" + (folder / "raw").string()};
+    return bench_in_process(words).exit_code == 0;
+  }();
+  if (!made) throw std::runtime_error("cannot prepare raw files");
+  return first_lines(content(folder / ("raw/" + name)), 50);
 }
 
 std::string source_file(const std::string& name) {
@@ -148,14 +159,10 @@ std::vector<Format> make_formats() {
          return {{"evaluate", "--data=" + (prepared() / "set.json").string(),
                   "--parameters=" + f.file("p.json", b)}};
        }},
-      {"capture", [] { return std::vector<std::string>{first_lines(prepared_file("raw/abs_1.csv"), 50)}; },
-       [](Bytes b, Files f) -> Commands {
-         return read_raw(b, first_lines(prepared_file("raw/odom_1.csv"), 50), f);
-       }},
-      {"wheels", [] { return std::vector<std::string>{first_lines(prepared_file("raw/odom_1.csv"), 50)}; },
-       [](Bytes b, Files f) -> Commands {
-         return read_raw(first_lines(prepared_file("raw/abs_1.csv"), 50), b, f);
-       }},
+      {"capture", [] { return std::vector<std::string>{raw_file("abs_1.csv")}; },
+       [](Bytes b, Files f) -> Commands { return read_raw(b, raw_file("odom_1.csv"), f); }},
+      {"wheels", [] { return std::vector<std::string>{raw_file("odom_1.csv")}; },
+       [](Bytes b, Files f) -> Commands { return read_raw(raw_file("abs_1.csv"), b, f); }},
       {"filter", [] { return std::vector<std::string>{CircleRun().data()}; },
        [](Bytes b, Files f) -> Commands { return read_filter(b, "", f); }},
       {"truth", [] { return std::vector<std::string>{CircleRun().truth()}; },
