@@ -212,6 +212,18 @@ RunRecord FilterRun::record(double seconds) const {
   return r;
 }
 
+// Constants whose quadratic form overflows are refused in the words of the options.
+ProfileForm profile_of(const EntropyConstants& c) {
+  ProfileForm form(c);
+  for (const QuadraticBlock& block : form.blocks())
+    if (!block.q.allFinite())
+      throw std::invalid_argument(fmt::format(
+          "the filter's constants overflow: found --sigma-encoder={:g}, --sigma-acceleration={:g}, "
+          "--sigma-rotation={:g}, dt {:g} s, L {:g} m, expected sizes that a robot meets",
+          c.sigma_encoder, c.sigma_acceleration, c.sigma_rotation, c.dt, c.wheel_distance));
+  return form;
+}
+
 // The choices that decide what the numbers mean.
 std::string setup_note(const FilterOptions& options, const FilterSetup& setup) {
   const EntropyConstants& c = setup.constants;
@@ -240,7 +252,7 @@ ExitCode filter_command(const FilterOptions& options) {
   refuse_existing("--out", options.out, options.overwrite);
   if (!options.records.empty()) require_no_records(options.records, options.overwrite, "--records");
   // Before the data are read, which may take long or come but once.
-  make_filter_method(options.solver, ProfileForm(setup.constants), options.budget, options.seed, kernel,
+  make_filter_method(options.solver, profile_of(setup.constants), options.budget, options.seed, kernel,
                      InterruptGuard::flag());
   const std::string begin_utc = utc_now();
   const Clock::time_point begin = Clock::now();

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/stop.hpp"
+#include "base/text.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
 #include "bench/interrupt.hpp"
@@ -52,7 +54,15 @@ Fused fuse_one(const Recording& recording, const Vector& z, const FilterChoice& 
   options.filter.kind = filter.kind;
   options.filter.literal_47 = filter.literal;
   options.smooth = filter.smooth;
-  FusionResult result = fuse(recording, z, streams, options);
+  FusionResult result;
+  try {
+    result = fuse(recording, z, streams, options);
+  } catch (const Interruption&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    throw DataError(
+        fmt::format("recording '{}': --filter={}: {}", shown(recording.id), filter.name, e.what()));
+  }
   if (filter.smooth)
     return {track_errors(recording, result.smoothed, result.smoothed_factors), std::move(result.smoothed),
             std::move(result.sensors)};

@@ -92,6 +92,18 @@ TEST(CliNumbers, ParametersThatOverflowAreRefused) {
   refused({"fuse", "--sensors=" + sensors, "--filter=none"}, "recording '");
   refused({"evaluate"}, "parameters 'p' on data set 'demo'");
   EXPECT_FALSE(fs::exists(out));
+  const auto filtered =
+      testing::run_bench({"fuse", "--sensors=" + sensors, "--filter=ekf", "--parameters=" + parameters});
+  EXPECT_EQ(filtered.exit_code, kData);
+  EXPECT_NE(filtered.err.find("bench: error: recording 'line_x_1': --filter=ekf: "), std::string::npos)
+      << filtered.err;
+}
+
+TEST(CliNumbers, ConstantsThatDoNotGoTogetherNameTheOptions) {
+  const TemporaryFolder folder;
+  const std::string data = folder.file("run.csv", testing::CircleRun().data());
+  expect_refusal({"filter", "--data=" + data, "--sigma-encoder=1e-200"}, testing::kUsage,
+                 {"--sigma-encoder=1e-200"});
 }
 
 }  // namespace
