@@ -4,17 +4,12 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
 #include "reports/record.hpp"
 #include "tests/support/data_error.hpp"
@@ -33,7 +28,6 @@ using testing::everything_in;
 using testing::expect_refusal;
 using ::testing::HasSubstr;
 using testing::kData;
-using testing::kInterrupted;
 using testing::kUsage;
 using testing::lines;
 using testing::plain_run;

@@ -84,13 +84,7 @@ TEST_P(CliHostile, EveryInputHasItsCodeAndItsLine) {
   EXPECT_GE(count, 5u);
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> list;
-  for (const Format& format : formats()) list.push_back(format.name);
-  return list;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, CliHostile, ::testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Every, CliHostile, ::testing::ValuesIn(format_names()),
                          [](const auto& parameter) { return parameter.param; });
 
 }  // namespace

@@ -1,13 +1,8 @@
 // What the program reads: inputs without an end, files outside a set, and text that would steer the reader's terminal.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/sysmacros.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::bench_words;
 using testing::content;
-using testing::demo_file;
 using testing::expect_refusal;
 using testing::files_below;
 using testing::filter_folder;
@@ -35,7 +29,6 @@ using ::testing::Not;
 using testing::Process;
 using testing::ProcessResult;
 using testing::run_bench;
-using testing::run_bench_in_shell;
 using testing::run_folder;
 using ::testing::StartsWith;
 using testing::TemporaryFolder;

@@ -1,11 +1,9 @@
 // Where the program writes: descriptors that are closed, outputs that exist or are no files, two processes on
 // one place.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
@@ -32,13 +30,11 @@ using ::testing::HasSubstr;
 using testing::kData;
 using testing::kUsage;
 using testing::lines;
-using ::testing::Not;
 using testing::Process;
 using testing::ProcessResult;
 using testing::run_bench;
 using testing::run_bench_in_shell;
 using testing::run_folder;
-using ::testing::StartsWith;
 using testing::TemporaryFolder;
 using testing::with;
 

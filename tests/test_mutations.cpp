@@ -116,13 +116,7 @@ TEST_P(Mutations, TheCorpusEndsWithAResultOrOneClearLine) {
     }
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> list;
-  for (const Format& format : formats()) list.push_back(format.name);
-  return list;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, Mutations, ::testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Every, Mutations, ::testing::ValuesIn(format_names()),
                          [](const auto& parameter) { return parameter.param; });
 
 }  // namespace

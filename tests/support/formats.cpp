@@ -261,6 +261,12 @@ const std::vector<Format>& formats() {
   return list;
 }
 
+std::vector<std::string> format_names() {
+  std::vector<std::string> list;
+  for (const Format& format : formats()) list.push_back(format.name);
+  return list;
+}
+
 const Format& format_called(const std::string& name) {
   for (const Format& format : formats())
     if (format.name == name) return format;

@@ -18,6 +18,7 @@ struct Format {
   std::function<std::vector<Words>(const std::string& bytes, const TemporaryFolder& folder)> commands;
 };
 const std::vector<Format>& formats();
+std::vector<std::string> format_names();
 // Throws std::invalid_argument.
 const Format& format_called(const std::string& name);
 
