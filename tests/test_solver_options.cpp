@@ -73,8 +73,8 @@ std::vector<std::string> names() {
   for (const SolverEntry& entry : solver_registry()) list.push_back(entry.name);
   return list;
 }
-INSTANTIATE_TEST_SUITE_P(All, SolverOptions, ::testing::ValuesIn(names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(All, SolverOptions, ::testing::ValuesIn(names()), [](const auto& parameter) {
+  std::string name = parameter.param;
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   return name;
