@@ -185,7 +185,7 @@ class CliFaults : public ::testing::TestWithParam<Verb> {
 TEST_P(CliFaults, AnOperationThatFailsIsSaidAndLeavesNothingPartial) {
   int faults = 0;
   for (const Effect& effect : kEffects)
-    for (int n = 1; n < 200; n *= 2) {
+    for (int n = 1; n < 40; n *= 2) {
       const fs::path out = folder_ / "out";
       fs::remove_all(out);
       ProcessResult result;
@@ -217,7 +217,7 @@ class CliFaultsOfSets : public CliFaults {};
 TEST_P(CliFaultsOfSets, OlderFilesComeBackWhenNewOnesFail) {
   const fs::path out = folder_ / "out";
   for (const Effect& effect : kEffects)
-    for (int n = 1; n < 200; n *= 2) {
+    for (int n = 1; n < 40; n *= 2) {
       fs::remove_all(out);
       fs::copy(folder_ / "whole", out, fs::copy_options::recursive);
       for (const std::string& name : whole_)
@@ -238,7 +238,7 @@ TEST_P(CliFaultsOfSets, OlderFilesComeBackWhenNewOnesFail) {
 
 TEST_P(CliFaults, AKilledProcessLeavesWholeFilesAndANewOneMakesTheRest) {
   for (const char* call : {"open", "write", "rename"})
-    for (int n = 1; n < 200; n *= 2) {
+    for (int n = 1; n < 40; n *= 2) {
       const fs::path out = folder_ / "out";
       fs::remove_all(out);
       ProcessResult result;
