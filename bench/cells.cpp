@@ -12,6 +12,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
 #include "bench/context.hpp"
 #include "solvers/random.hpp"
 #include "solvers/registry.hpp"
@@ -158,12 +159,20 @@ void run_cells(const std::vector<Problem>& problems, const CellList& cells, cons
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                               static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
+    Meeting meeting;
+    meeting.arrive();
     arena.execute([&] {
+      const auto work = [&] {
+        meeting.arrive();
+        dispatcher.work();
+        meeting.arrive();
+      };
       tbb::task_group workers;
-      for (int i = 1; i < threads; ++i) workers.run([&] { dispatcher.work(); });
-      dispatcher.work();
+      for (int i = 1; i < threads; ++i) workers.run(work);
+      work();
       workers.wait();
     });
+    meeting.arrive();
   }
   dispatcher.rethrow();
 }

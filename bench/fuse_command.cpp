@@ -1,14 +1,13 @@
 #include "bench/fuse_command.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "base/stop.hpp"
 #include "base/text.hpp"
 #include "bench/context.hpp"
@@ -211,12 +210,9 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
                   const SensorsFile& sensors, const std::vector<std::vector<SensorStream>>& streams,
                   int threads) {
   std::vector<Fused> fused(recordings.size());
-  tbb::task_arena arena(thread_count(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, recordings.size(), [&](std::size_t i) {
-      fused[i] = fuse_one(recordings[i], z, filter, sensors, streams[i]);
-      require_finite(fused[i].errors, filter);
-    });
+  parallel_for(recordings.size(), thread_count(threads), [&](std::size_t i) {
+    fused[i] = fuse_one(recordings[i], z, filter, sensors, streams[i]);
+    require_finite(fused[i].errors, filter);
   });
   FusedRow out;
   out.row.filtered = filter.filtered;
@@ -244,11 +240,8 @@ std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
                                                    int threads) {
   require_measurements(file, recordings);
   std::vector<std::vector<SensorStream>> streams(recordings.size());
-  tbb::task_arena arena(thread_count(threads));
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, recordings.size(),
-                      [&](std::size_t i) { streams[i] = make_streams(file, recordings[i], seed); });
-  });
+  parallel_for(recordings.size(), thread_count(threads),
+               [&](std::size_t i) { streams[i] = make_streams(file, recordings[i], seed); });
   return streams;
 }
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "base/parallel.hpp"
+
 namespace odobench {
 namespace {
 
@@ -233,10 +235,16 @@ void Run::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) {
       problem_.batch_cost(x.middleCols(done + first, last - first), values.segment(first, last - first));
     };
     if (threads_ > 1 && width > kSlice) {
+      Meeting meeting;
+      meeting.arrive();
       tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(Eigen::Index{0}, (width + kSlice - 1) / kSlice,
-                          [&](Eigen::Index i) { slice(i * kSlice, std::min((i + 1) * kSlice, width)); });
+        tbb::parallel_for(Eigen::Index{0}, (width + kSlice - 1) / kSlice, [&](Eigen::Index i) {
+          meeting.arrive();
+          slice(i * kSlice, std::min((i + 1) * kSlice, width));
+          meeting.arrive();
+        });
       });
+      meeting.arrive();
     } else {
       slice(0, width);
     }
