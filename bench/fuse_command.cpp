@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "base/stop.hpp"
 #include "base/text.hpp"
 #include "bench/context.hpp"
 #include "bench/evaluate_command.hpp"
@@ -56,8 +55,6 @@ Fused fuse_one(const Recording& recording, const Vector& z, const FilterChoice& 
   FusionResult result;
   try {
     result = fuse(recording, z, streams, options);
-  } catch (const Interruption&) {
-    throw;
   } catch (const std::runtime_error& e) {
     throw DataError(
         fmt::format("recording '{}': --filter={}: {}", shown(recording.id), filter.name, e.what()));

@@ -226,17 +226,6 @@ std::vector<Format> make_formats() {
   };
 }
 
-bool unprintable(const std::string& text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const CodePoint c = code_point_at(text, at);
-    const bool control =
-        (c.value < 0x20 && c.value != '\n' && c.value != '\r') || (c.value >= 0x7F && c.value < 0xA0);
-    if (!c.valid || control || (c.value >= 0x202A && c.value <= 0x202E)) return true;
-    at += c.bytes;
-  }
-  return false;
-}
-
 // The first line with nan or inf as a number, not as a part of a word.
 std::string not_finite(const std::string& text) {
   static const std::regex number("(^|[^A-Za-z_])[-+]?(nan|inf)($|[^A-Za-z_])",
@@ -255,6 +244,17 @@ bool speaks_of_infinity(std::string text) {
 }
 
 }  // namespace
+
+bool unprintable(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint c = code_point_at(text, at);
+    const bool control =
+        (c.value < 0x20 && c.value != '\n' && c.value != '\r') || (c.value >= 0x7F && c.value < 0xA0);
+    if (!c.valid || control || (c.value >= 0x202A && c.value <= 0x202E)) return true;
+    at += c.bytes;
+  }
+  return false;
+}
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> list = make_formats();
