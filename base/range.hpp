@@ -1,9 +1,13 @@
-// How large a number in a data file may be.
+// What is no number, and how large one in a data file may be.
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace odobench {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 // No quantity that a robot meets comes near it, and the square of a product of two such numbers can still be summed in doubles:
 // what is computed from them stays finite.

@@ -35,7 +35,7 @@
 namespace odobench {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kProgramExamples = R"(Examples:
   bench                                              four solvers on the demo set
   bench --solver=lm,pso --data=set.json --repeat=10  compare on your own data
   bench --solver="pso[swarm=60],ga" --polish=lm --out=results
@@ -78,10 +78,6 @@ struct Arguments {
   CompareArguments compare;
   FusionArguments fusion;
 };
-
-void add_format(CLI::App& app, std::string& format) {
-  app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
-}
 
 // Of verbs that write files instead of printing tables.
 void add_json(CLI::App& app, bool& json) {
@@ -332,7 +328,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   for (Verb& verb : add_reading_verbs(app, arguments)) verbs.push_back(std::move(verb));
   for (Verb& verb : add_fusion_verbs(app, arguments.fusion)) verbs.push_back(std::move(verb));
   for (Verb& verb : add_simulation_verbs(app, arguments)) verbs.push_back(std::move(verb));
-  app.footer(kExamples);
+  app.footer(kProgramExamples);
   app.set_version_flag("--version", version_line);
   for (const Verb& verb : verbs) {
     verb.app->allow_extras();

@@ -17,7 +17,7 @@
 namespace odobench {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kCompareExamples = R"(Examples:
   bench compare results/old results/new
   bench compare old new --fail-on="J:+0.1%,evaluations:+50%" --format=md > comment.md
   bench compare old new --fail-on=e_sr:+1% --metrics=J,e_sr
@@ -129,7 +129,7 @@ CLI::App* add_compare_verb(CLI::App& app, CompareArguments& a) {
       });
   verb->add_flag("--gate-foreign-times", a.gate_foreign_times,
                  "apply limits to times although they were taken on different processors");
-  verb->footer(kExamples);
+  verb->footer(kCompareExamples);
   return verb;
 }
 

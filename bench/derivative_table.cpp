@@ -18,15 +18,6 @@ namespace {
 
 constexpr int kRandomPoints = 3;
 
-Column column(std::string id, std::string name, Align align = Align::Right, std::string group = "") {
-  Column c;
-  c.id = std::move(id);
-  c.name = std::move(name);
-  c.align = align;
-  c.group = std::move(group);
-  return c;
-}
-
 struct Worst {
   DerivativeComparison comparison;
   std::string point;
@@ -81,15 +72,15 @@ DerivativeTable check_derivatives(const std::vector<LoadedProblem>& problems, st
   Table& table = result.table;
   table.id = "derivatives";
   table.title = "Derivatives against differences";
-  table.columns = {column("parameter", "parameter", Align::Left),
-                   column("problem", "problem", Align::Left),
-                   column("kind", "derivative", Align::Left),
-                   column("error", "relative error", Align::Right, "error"),
-                   column("limit", "limit", Align::Right, "error"),
-                   column("stated", "stated", Align::Right, "value"),
-                   column("differenced", "by differences", Align::Right, "value"),
-                   column("point", "at", Align::Left),
-                   column("verdict", "verdict", Align::Left)};
+  table.columns = {text_column("parameter"),
+                   text_column("problem"),
+                   text_column("kind", "derivative"),
+                   number_column("error", "relative error", "", "error"),
+                   number_column("limit", "limit", "", "error"),
+                   number_column("stated", "stated", "", "value"),
+                   number_column("differenced", "by differences", "", "value"),
+                   text_column("point", "at"),
+                   text_column("verdict")};
   CountLine progress(!quiet, "points", static_cast<std::int64_t>(problems.size()) * (kRandomPoints + 1));
   int wrong = 0;
   for (const LoadedProblem& loaded : problems) {

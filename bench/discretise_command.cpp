@@ -14,9 +14,9 @@
 namespace odobench {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-constexpr int kDigits = 8;
+constexpr int kMatrixDigits = 8;
 
 // One matrix of the output with its names.
 struct Shown {
@@ -25,7 +25,7 @@ struct Shown {
   const std::vector<SignalInfo>* columns;
 };
 
-std::vector<Shown> shown(const LinearSystem& s, const Discretisation& d) {
+std::vector<Shown> matrices_of(const LinearSystem& s, const Discretisation& d) {
   std::vector<Shown> list{{"F", "F, state transition", "F", &d.f, &s.states}};
   if (d.psi.cols() > 0) list.push_back({"Psi", "Psi, constant inputs to states", "\\Psi", &d.psi, &s.inputs});
   if (d.gamma.cols() > 0) {
@@ -53,7 +53,7 @@ Table matrix_table(const LinearSystem& s, const Shown& m, const std::string& suf
     table.rows.push_back(
         {text_cell(state.unit.empty() ? state.name : fmt::format("{} [{}]", state.name, state.unit))});
     for (Eigen::Index j = 0; j < m.matrix->cols(); ++j)
-      table.rows.back().push_back(significant_cell((*m.matrix)(i, j), kDigits));
+      table.rows.back().push_back(significant_cell((*m.matrix)(i, j), kMatrixDigits));
   }
   return table;
 }
@@ -83,10 +83,10 @@ Table error_table(const SeriesDiscretisation& s, int order) {
   return table;
 }
 
-Json rows_of(const Matrix& m) {
-  Json rows = Json::array();
+OrderedJson rows_of(const Matrix& m) {
+  OrderedJson rows = OrderedJson::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    Json row = Json::array();
+    OrderedJson row = OrderedJson::array();
     for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
     rows.push_back(row);
   }
@@ -95,23 +95,23 @@ Json rows_of(const Matrix& m) {
 
 std::string json_text(const SystemFile& file, const DiscretiseOptions& options, const Discretisation& d,
                       const SeriesDiscretisation* series, const std::vector<Table>& tables) {
-  Json names = Json::array();
+  OrderedJson names = OrderedJson::array();
   for (const SignalInfo& s : file.system.states) names.push_back(s.name);
-  Json root{
+  OrderedJson root{
       {"schema_version", 1}, {"system", file.system.name}, {"period", options.period}, {"states", names}};
-  root["order"] = options.order ? Json(*options.order) : Json(nullptr);
-  for (const Shown& m : shown(file.system, d)) root[m.id] = rows_of(*m.matrix);
+  root["order"] = options.order ? OrderedJson(*options.order) : OrderedJson(nullptr);
+  for (const Shown& m : matrices_of(file.system, d)) root[m.id] = rows_of(*m.matrix);
   if (series != nullptr)
     root["series_error"] = {{"F", series->f_error},         {"Psi", series->psi_error},
                             {"Gamma", series->gamma_error}, {"Q", series->q_error},
                             {"F_bound", series->f_bound},   {"integral_bound", series->integral_bound}};
   // The same as tables, as every verb has them.
-  root["tables"] = Json::parse(render(tables, Format::Json)).at("tables");
+  root["tables"] = OrderedJson::parse(render(tables, Format::Json)).at("tables");
   return root.dump(2) + "\n";
 }
 
 std::string latex_number(double value) {
-  std::string text = fmt::format("{:.{}g}", value, kDigits);
+  std::string text = fmt::format("{:.{}g}", value, kMatrixDigits);
   const auto e = text.find('e');
   if (e == std::string::npos) return text;
   return fmt::format("{} \\cdot 10^{{{}}}", text.substr(0, e), std::stoi(text.substr(e + 1)));
@@ -123,7 +123,7 @@ std::string latex_text(const SystemFile& file, const DiscretiseOptions& options,
       "% {}, period {}{}; needs amsmath\n", file.system.name, options.period,
       series != nullptr ? fmt::format(", series of order {}", *options.order) : std::string(", exact"));
   const auto out = std::back_inserter(text);
-  for (const Shown& m : shown(file.system, d)) {
+  for (const Shown& m : matrices_of(file.system, d)) {
     fmt::format_to(out, "\\[\n  {} = \\begin{{bmatrix}}\n", m.latex);
     for (Eigen::Index i = 0; i < m.matrix->rows(); ++i) {
       text += "    ";
@@ -159,7 +159,7 @@ ExitCode discretise_command(const DiscretiseOptions& options) {
       fmt::format(" ({}, T = {} s, {})", file.system.name, options.period,
                   options.order ? fmt::format("series of order {}", *options.order) : std::string("exact"));
   std::vector<Table> tables;
-  for (const Shown& m : shown(file.system, d)) tables.push_back(matrix_table(file.system, m, suffix));
+  for (const Shown& m : matrices_of(file.system, d)) tables.push_back(matrix_table(file.system, m, suffix));
   if (errors != nullptr) tables.push_back(error_table(*errors, *options.order));
   if (format == Format::Json)
     print_text(json_text(file, options, d, errors, tables));

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "base/angle.hpp"
 #include "bench/option_values.hpp"
 #include "problems/entropy/entropy_model.hpp"
 #include "solvers/options.hpp"
@@ -15,7 +15,6 @@
 namespace odobench {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 // 0.0085554224 = 0.4 * 0.021388556 rad/s^2, the largest angular acceleration of the thesis' robot: its program uses the
 // number for deg/s^2.
 constexpr double kThesisStepRotation = 0.0085554224;
@@ -77,8 +76,8 @@ FilterSetup make_filter_setup(const FilterOptions& options) {
   FilterSetup setup;
   const bool published = options.as_published;
   setup.constants = options.constants;
-  setup.constants.step_rotation = options.step_rotation.value_or(
-      published ? kThesisStepRotation : kThesisStepRotation / kRadiansPerDegree);
+  setup.constants.step_rotation =
+      options.step_rotation.value_or(published ? kThesisStepRotation : kThesisStepRotation / kDegree);
   if (options.dt) setup.constants.dt = *options.dt;
   validate(setup.constants);
 
@@ -141,7 +140,7 @@ const ConvertedRow& SampleConverter::convert(const FilterRow& row) {
     sum_y += row_.y[w] = row.wheel[w] * sin_[w];
   }
   if (setup_.omega_cross_v) {
-    const double dt = setup_.constants.dt, omega = row.rotation_deg * kRadiansPerDegree / dt;
+    const double dt = setup_.constants.dt, omega = row.rotation_deg * kDegree / dt;
     sample.ax += omega * sum_y / (4 * dt);
     sample.ay -= omega * sum_x / (4 * dt);
   }

@@ -5,11 +5,11 @@
 #include "problems/fusion/linear_system.hpp"
 
 namespace odobench {
-namespace {
-
 void add_format(CLI::App& app, std::string& format) {
   app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
 }
+
+namespace {
 
 Verb add_discretise(CLI::App& app, DiscretiseOptions& o) {
   CLI::App* verb =

@@ -18,6 +18,9 @@ struct Verb {
   std::function<ExitCode()> execute;
 };
 
+// --format of the tables that the verb prints.
+void add_format(CLI::App& app, std::string& format);
+
 struct FusionArguments {
   DiscretiseOptions discretise;
   FuseOptions fuse;

@@ -14,17 +14,17 @@
 namespace odobench {
 namespace {
 
-constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::array<int, 3> kEndingSignals{SIGINT, SIGTERM, SIGHUP};
 constexpr std::int64_t kSameWish_ns = 250'000'000;
 
 // A signal handler can reach nothing but globals; these are the process's.
 enum class Phase { NothingWritten, Remembered, Ending };
 std::atomic<Phase> phase{Phase::NothingWritten};
 std::atomic<bool> interrupted{false}, terminal{false};
-std::array<std::atomic<std::int64_t>, kSignals.size()> first_ns{};  // when a kind came; 0: not yet
+std::array<std::atomic<std::int64_t>, kEndingSignals.size()> first_ns{};  // when a kind came; 0: not yet
 static_assert(std::atomic<Phase>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free,
               "a signal handler may touch only lock-free atomics");
-std::array<struct sigaction, kSignals.size()> previous;
+std::array<struct sigaction, kEndingSignals.size()> previous;
 
 std::int64_t now_ns() {
   timespec t{};
@@ -46,8 +46,8 @@ extern "C" void odobench_on_signal(int signal) {
   Phase now_in = Phase::NothingWritten;
   if (phase.compare_exchange_strong(now_in, Phase::Ending) || now_in == Phase::Ending) end_at_once();
   interrupted.store(true, std::memory_order_relaxed);
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    if (kSignals[i] != signal) continue;
+  for (std::size_t i = 0; i < kEndingSignals.size(); ++i) {
+    if (kEndingSignals[i] != signal) continue;
     std::int64_t first = 0;
     const std::int64_t now = now_ns();
     if (first_ns[i].compare_exchange_strong(first, now) || now - first < kSameWish_ns) return;
@@ -69,18 +69,18 @@ InterruptGuard::InterruptGuard() {
   action.sa_handler = odobench_on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+  for (std::size_t i = 0; i < kEndingSignals.size(); ++i) {
     first_ns[i].store(0);
-    ::sigaction(kSignals[i], nullptr, &previous[i]);
-    if (kSignals[i] == SIGHUP && previous[i].sa_handler == SIG_IGN) continue;
-    ::sigaction(kSignals[i], &action, nullptr);
+    ::sigaction(kEndingSignals[i], nullptr, &previous[i]);
+    if (kEndingSignals[i] == SIGHUP && previous[i].sa_handler == SIG_IGN) continue;
+    ::sigaction(kEndingSignals[i], &action, nullptr);
   }
 }
 
 InterruptGuard::~InterruptGuard() {
   phase.store(Phase::Remembered);
-  for (std::size_t i = 0; i < kSignals.size(); ++i)
-    if (previous[i].sa_handler != SIG_DFL) ::sigaction(kSignals[i], &previous[i], nullptr);
+  for (std::size_t i = 0; i < kEndingSignals.size(); ++i)
+    if (previous[i].sa_handler != SIG_DFL) ::sigaction(kEndingSignals[i], &previous[i], nullptr);
 }
 
 void InterruptGuard::remember() {

@@ -17,36 +17,15 @@
 namespace odobench {
 namespace {
 
-Column text_column(const std::string& id, const std::string& name) {
-  Column column;
-  column.id = id;
-  column.name = name;
-  column.align = Align::Left;
-  return column;
-}
-
-Column number_column(const std::string& id, const std::string& name, const std::string& unit = "") {
-  Column column;
-  column.id = id;
-  column.name = name;
-  column.unit = unit;
-  return column;
-}
-
 std::vector<Table> solver_tables() {
   Table solvers{
-      "solvers",
-      "Solvers",
-      {text_column("solver", "solver"), text_column("kind", "kind"), text_column("summary", "summary")},
-      {},
-      {}};
-  Table options{
-      "options",
-      "Options, as in --solver=NAME[option=value,...]",
-      {text_column("solver", "solver"), text_column("option", "option"), text_column("default", "default"),
-       text_column("allowed", "allowed"), text_column("help", "help")},
-      {},
-      {}};
+      "solvers", "Solvers", {text_column("solver"), text_column("kind"), text_column("summary")}, {}, {}};
+  Table options{"options",
+                "Options, as in --solver=NAME[option=value,...]",
+                {text_column("solver"), text_column("option"), text_column("default"), text_column("allowed"),
+                 text_column("help")},
+                {},
+                {}};
   for (const SolverEntry& entry : solver_registry()) {
     solvers.rows.push_back({text_cell(entry.name),
                             text_cell(entry.stochastic ? "stochastic" : "deterministic"),
@@ -61,10 +40,9 @@ std::vector<Table> solver_tables() {
 Table problem_table(const std::string& id, const std::string& title, const std::string& note) {
   return {id,
           title,
-          {text_column("problem", "problem"), number_column("dimension", "usual dimension"),
-           text_column("dimensions", "dimensions"), number_column("residuals", "residuals"),
-           text_column("derivatives", "derivatives"), text_column("optimum", "lowest known J"),
-           text_column("source", "source")},
+          {text_column("problem"), number_column("dimension", "usual dimension"), text_column("dimensions"),
+           number_column("residuals"), text_column("derivatives"), text_column("optimum", "lowest known J"),
+           text_column("source")},
           {},
           {note}};
 }
@@ -106,7 +84,7 @@ std::vector<Table> problem_tables() {
 std::vector<Table> known_data_tables() {
   Table table{"data",
               "Known data sets",
-              {text_column("name", "name"), text_column("file", "file")},
+              {text_column("name"), text_column("file")},
               {},
               {"'bench list data FILE' describes a set; 'bench import vitko2024 --from=DIR --out=set.json' "
                "makes one of raw files."}};
@@ -120,11 +98,8 @@ double seconds_of(const Recording& r) {
 }
 
 Table overview_table(const Dataset& set, const std::string& path) {
-  Table table{"set",
-              fmt::format("Data set {}", set.name),
-              {text_column("item", "item"), text_column("value", "value")},
-              {},
-              {}};
+  Table table{
+      "set", fmt::format("Data set {}", set.name), {text_column("item"), text_column("value")}, {}, {}};
   const auto row = [&](const char* item, const std::string& value) {
     if (!value.empty()) table.rows.push_back({text_cell(item), text_cell(value)});
   };
@@ -150,13 +125,12 @@ Table overview_table(const Dataset& set, const std::string& path) {
 }
 
 Table parameter_table(const Dataset& set) {
-  Table table{
-      "parameters",
-      "Robot parameters",
-      {text_column("parameter", "parameter"), text_column("unit", "unit"),
-       number_column("nominal", "nominal"), number_column("lower", "lower"), number_column("upper", "upper")},
-      {},
-      {}};
+  Table table{"parameters",
+              "Robot parameters",
+              {text_column("parameter"), text_column("unit"), number_column("nominal"),
+               number_column("lower"), number_column("upper")},
+              {},
+              {}};
   for (std::size_t k = 0; k < set.known_parameters.size(); ++k) {
     const NamedParameters& known = set.known_parameters[k];
     table.columns.push_back(number_column(fmt::format("known_{}", k + 1), known.name));
@@ -177,9 +151,8 @@ std::vector<Table> set_tables(const std::string& path) {
   const Dataset set = load_dataset(path);
   Table trajectories{"trajectories",
                      "Trajectories",
-                     {text_column("trajectory", "trajectory"), text_column("description", "description"),
-                      number_column("recordings", "recordings"), number_column("samples", "samples"),
-                      number_column("duration", "duration", "s")},
+                     {text_column("trajectory"), text_column("description"), number_column("recordings"),
+                      number_column("samples"), number_column("duration", "duration", "s")},
                      {},
                      {}};
   for (const Trajectory& t : set.trajectories) {
@@ -195,9 +168,8 @@ std::vector<Table> set_tables(const std::string& path) {
   }
   Table recordings{"recordings",
                    "Recordings",
-                   {text_column("recording", "recording"), text_column("trajectory", "trajectory"),
-                    number_column("repetition", "repetition"), number_column("samples", "samples"),
-                    number_column("duration", "duration", "s")},
+                   {text_column("recording"), text_column("trajectory"), number_column("repetition"),
+                    number_column("samples"), number_column("duration", "duration", "s")},
                    {},
                    {}};
   for (const Recording& r : set.recordings)

@@ -25,15 +25,6 @@ namespace {
 constexpr int kMostProposals = 60;
 constexpr std::size_t kShownComponents = 4;
 
-Column column(const std::string& id, const std::string& unit = "", Align align = Align::Right) {
-  Column c;
-  c.id = c.name = id;
-  std::replace(c.name.begin(), c.name.end(), '_', ' ');
-  c.unit = unit;
-  c.align = align;
-  return c;
-}
-
 // What --drives and --candidates choose from: the scenario's own drives, then those known by name.
 std::vector<simulate::Drive> choices(const simulate::RecordingScenario& s) {
   std::vector<simulate::Drive> all = s.drives;
@@ -122,8 +113,8 @@ Cell percent(double relative) {
 Table parameter_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& parameters, double wanted) {
   Table t{"plan.parameters",
           "What these drives tell about each parameter",
-          {column("parameter", "", Align::Left), column("deviation", "%"), column("absolute_deviation", "mm"),
-           column("determined", "", Align::Left)},
+          {text_column("parameter"), number_column("deviation", "deviation", "%"),
+           number_column("absolute_deviation", "absolute deviation", "mm"), text_column("determined")},
           {},
           {}};
   int count = 0;
@@ -146,8 +137,8 @@ Table parameter_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& p
 Table direction_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& parameters) {
   Table t{"plan.directions",
           "Combinations from best to worst determined",
-          {column("rank", "", Align::Left), column("singular_value"), column("deviation", "%"),
-           column("direction", "", Align::Left)},
+          {text_column("rank"), number_column("singular_value"), number_column("deviation", "deviation", "%"),
+           text_column("direction")},
           {},
           {"Singular values of the noise-weighted Jacobian in relative parameters; direction: its largest "
            "parts."}};
@@ -171,7 +162,7 @@ Table direction_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& p
 Table undetermined_table(const PlanAnalysis& a, double wanted) {
   Table t{"plan.undetermined",
           "What stays undetermined",
-          {column("number", "", Align::Left), column("combination", "", Align::Left)},
+          {text_column("number"), text_column("combination")},
           {},
           {fmt::format(
               "Changing these parameters together, those after 'against' the other way, changes nothing that "
@@ -184,12 +175,12 @@ Table undetermined_table(const PlanAnalysis& a, double wanted) {
 
 Table proposal_table(const std::vector<Proposal>& proposals, const std::vector<DriveInformation>& drives,
                      double wanted) {
-  Table t{
-      "plan.proposals",
-      "Drives to add, best first",
-      {column("number", "", Align::Left), column("drive", "", Align::Left), column("largest_deviation", "%")},
-      {},
-      {}};
+  Table t{"plan.proposals",
+          "Drives to add, best first",
+          {text_column("number"), text_column("drive"),
+           number_column("largest_deviation", "largest deviation", "%")},
+          {},
+          {}};
   for (std::size_t k = 0; k < proposals.size(); ++k)
     t.rows.push_back({text_cell(fmt::format("{}", k + 1)), text_cell(drives[proposals[k].drive].name),
                       percent(proposals[k].largest_deviation)});

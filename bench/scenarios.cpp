@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 
+#include "base/angle.hpp"
 #include "bench/locations.hpp"
 #include "datasets/simulate/scenario_file.hpp"
 #include "solvers/options.hpp"
@@ -15,8 +15,6 @@
 namespace odobench {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // A number, or {"value", "unit", "origin", "text"} with the right unit and an honest origin.
 double robot_value(const JsonNode& node, const dynamics::ParameterDescription& description) {

@@ -134,31 +134,11 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   if (o.json) print_tables({written_table(written)}, Format::Json);
 }
 
-Column column(const std::string& id, Align align = Align::Left) {
-  Column c;
-  c.id = c.name = id;
-  c.align = align;
-  return c;
-}
-
-// Text columns have no unit of their own.
-Column named(const std::string& id, const std::string& name) {
-  Column c = column(id);
-  c.name = name;
-  return c;
-}
-
-Column duration_column() {
-  Column c = column("duration_s", Align::Right);
-  c.name = "duration";
-  c.unit = "s";
-  return c;
-}
-
 std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
   Table drives{"drives",
                fmt::format("Drives of {}", s.name),
-               {column("drive"), column("description"), column("phases", Align::Right), duration_column()},
+               {text_column("drive"), text_column("description"), number_column("phases"),
+                number_column("duration_s", "duration", "s")},
                {},
                {s.description}};
   for (const simulate::Drive& d : s.drives)
@@ -167,7 +147,7 @@ std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
   Table robot{
       "robot",
       "True and believed parameters",
-      {column("parameter"), column("unit"), column("truth", Align::Right), column("believed", Align::Right)},
+      {text_column("parameter"), text_column("unit"), number_column("truth"), number_column("believed")},
       {},
       {}};
   for (std::size_t i = 0; i < s.robot.parameters.size(); ++i)
@@ -180,8 +160,8 @@ std::vector<Table> detail_tables(const simulate::RecordingScenario& s) {
 std::vector<Table> detail_tables(const DynamicsScenario& s) {
   Table segments{"segments",
                  fmt::format("Segments of {}", s.name),
-                 {named("until_s", "until [s]"), named("voltages_V", "voltages [V]"),
-                  named("steering_deg", "steering [deg]")},
+                 {text_column("until_s", "until [s]"), text_column("voltages_V", "voltages [V]"),
+                  text_column("steering_deg", "steering [deg]")},
                  {},
                  {s.description}};
   for (const dynamics::Segment& g : s.setup.segments) {
@@ -195,8 +175,8 @@ std::vector<Table> detail_tables(const DynamicsScenario& s) {
   }
   Table robot{"robot",
               "Robot parameters",
-              {column("parameter"), column("symbol"), column("value", Align::Right), column("unit"),
-               column("origin"), column("remark")},
+              {text_column("parameter"), text_column("symbol"), number_column("value"), text_column("unit"),
+               text_column("origin"), text_column("remark")},
               {},
               {"Origin: given by the thesis, or chosen because it gives nothing."}};
   dynamics::RobotParameters copy = s.setup.robot;
@@ -220,11 +200,12 @@ ExitCode simulate_command(const SimulateOptions& options) {
 std::vector<Table> scenario_tables(const std::string& source) {
   if (!source.empty())
     return std::visit([](const auto& s) { return detail_tables(s); }, load_scenario(source));
-  Table table{"scenarios",
-              "Scenarios, as in bench simulate --scenario=NAME",
-              {column("scenario"), column("kind"), column("drives", Align::Right), column("description")},
-              {},
-              {"'bench list scenarios NAME' shows one in detail; docs/simulation.md describes the format."}};
+  Table table{
+      "scenarios",
+      "Scenarios, as in bench simulate --scenario=NAME",
+      {text_column("scenario"), text_column("kind"), number_column("drives"), text_column("description")},
+      {},
+      {"'bench list scenarios NAME' shows one in detail; docs/simulation.md describes the format."}};
   for (const auto& [name, path] : known_scenarios()) {
     const Scenario scenario = load_scenario(path.string());
     if (const auto* r = std::get_if<simulate::RecordingScenario>(&scenario))

@@ -46,24 +46,10 @@ struct Setting {
   FusedRow held_out;
 };
 
-Column column(const std::string& id, const std::string& name, const std::string& unit = "",
-              bool text = false) {
-  Column c;
-  c.id = id;
-  c.name = name;
-  c.unit = unit;
-  if (text) c.align = Align::Left;
-  return c;
-}
-
 Table sigma_table(const Problem& problem, const std::vector<Setting>& settings,
                   const std::vector<std::string>& remarks) {
-  Table table{"sigmas",
-              "Standard deviations that the filter believes",
-              {column("parameter", "parameter", "", true)},
-              {},
-              {}};
-  for (const Setting& s : settings) table.columns.push_back(column(s.label, s.label));
+  Table table{"sigmas", "Standard deviations that the filter believes", {text_column("parameter")}, {}, {}};
+  for (const Setting& s : settings) table.columns.push_back(number_column(s.label, s.label));
   for (Eigen::Index i = 0; i < problem.dimension(); ++i) {
     const std::string& name = problem.parameters()[static_cast<std::size_t>(i)].name;
     table.rows.push_back({text_cell(name.substr(name.find(' ') + 1))});
@@ -76,17 +62,17 @@ Table sigma_table(const Problem& problem, const std::vector<Setting>& settings,
 }
 
 Table result_table(const std::vector<Setting>& settings, const Split& s, const std::string& objective) {
-  Table table{"tuning",
-              fmt::format("Tuning by {} on {} recordings, judged on {}{}", objective, s.training.size(),
-                          s.held_out.empty() ? s.training.size() : s.held_out.size(),
-                          s.held_out.empty() ? " (the same ones: there are no others)" : " others"),
-              {column("setting", "setting", "", true), best_if(Better::Lower, column("cost", "cost")),
-               column("evaluations", "evaluations"),
-               best_if(Better::Lower, column("rmse_position", "RMSE position", "m")),
-               best_if(Better::Lower, column("rmse_heading", "RMSE heading", "rad")), column("nees", "NEES"),
-               column("verdict", "verdict", "", true), column("stop", "stop", "", true)},
-              {},
-              {}};
+  Table table{
+      "tuning",
+      fmt::format("Tuning by {} on {} recordings, judged on {}{}", objective, s.training.size(),
+                  s.held_out.empty() ? s.training.size() : s.held_out.size(),
+                  s.held_out.empty() ? " (the same ones: there are no others)" : " others"),
+      {text_column("setting"), best_if(Better::Lower, number_column("cost")), number_column("evaluations"),
+       best_if(Better::Lower, number_column("rmse_position", "RMSE position", "m")),
+       best_if(Better::Lower, number_column("rmse_heading", "RMSE heading", "rad")),
+       number_column("nees", "NEES"), text_column("verdict"), text_column("stop")},
+      {},
+      {}};
   for (const Setting& one : settings)
     table.rows.push_back({text_cell(one.label), significant_cell(one.cost, 8), count_cell(one.evaluations),
                           fixed_cell(one.held_out.row.rmse_position, 6),

@@ -24,10 +24,10 @@
 namespace odobench {
 namespace {
 
-constexpr int kDigits = 6;  // as in the thesis
+constexpr int kErrorDigits = 6;  // as in the thesis
 
 // One repeat of all drives with one set.
-struct Outcome {
+struct VerifyOutcome {
   std::vector<TrajectoryErrors> errors;
   Totals totals;
   // Mean distance of the true end from the reference's, m, and of the headings, rad, by trajectory.
@@ -52,10 +52,10 @@ std::array<double, 2> arrival_of(const simulate::SimulatedDrive& d, const simula
   return {std::hypot(end.x - x, end.y - y), std::abs(end.theta - start.theta - wanted.theta)};
 }
 
-Outcome drive_once(const simulate::RecordingScenario& s, const Vector& believed, std::uint64_t seed,
-                   int threads, InstructionSet kernel) {
+VerifyOutcome drive_once(const simulate::RecordingScenario& s, const Vector& believed, std::uint64_t seed,
+                         int threads, InstructionSet kernel) {
   simulate::SimulatedSet set = simulate::simulate_set(s, seed, threads);
-  Outcome outcome;
+  VerifyOutcome outcome;
   for (std::size_t t = 0; t < s.drives.size(); ++t) {
     const auto repetitions = static_cast<std::size_t>(s.repetitions);
     std::array<double, 2> mean{};
@@ -87,12 +87,12 @@ Estimate estimate(const std::vector<double>& values) {
   return {s.mean, boost::math::quantile(distribution, 0.975) * s.sigma / std::sqrt(n)};
 }
 
-using Outcomes = std::vector<std::vector<Outcome>>;  // by set and repeat
-using Pick = std::function<double(const Outcome&)>;
+using Outcomes = std::vector<std::vector<VerifyOutcome>>;  // by set and repeat
+using Pick = std::function<double(const VerifyOutcome&)>;
 
-std::vector<double> picked(const std::vector<Outcome>& outcomes, const Pick& pick) {
+std::vector<double> picked(const std::vector<VerifyOutcome>& outcomes, const Pick& pick) {
   std::vector<double> values;
-  for (const Outcome& o : outcomes) values.push_back(pick(o));
+  for (const VerifyOutcome& o : outcomes) values.push_back(pick(o));
   return values;
 }
 
@@ -121,11 +121,11 @@ class TableMaker {
     const double nominal = estimate(picked(outcomes_.front(), pick)).mean;
     for (std::size_t i = 0; i < sets_.size(); ++i) {
       const Estimate e = estimate(picked(outcomes_[i], pick));
-      Cell cell = std::isnan(e.mean) ? Cell{} : fixed_cell(e.mean, kDigits);
+      Cell cell = std::isnan(e.mean) ? Cell{} : fixed_cell(e.mean, kErrorDigits);
       if (i > 0 && !std::isnan(e.mean) && !std::isnan(nominal)) cell.difference = e.mean - nominal;
       cell.noise = e.half_width.value_or(std::numeric_limits<double>::infinity());
       t.rows[i].push_back(std::move(cell));
-      t.rows[i].push_back(e.half_width ? fixed_cell(*e.half_width, kDigits) : Cell{});
+      t.rows[i].push_back(e.half_width ? fixed_cell(*e.half_width, kErrorDigits) : Cell{});
     }
   }
   // Change to nominal in %, drive against the same drive.
@@ -166,11 +166,11 @@ Table trajectory_table(const TableMaker& maker, const simulate::Drive& drive, st
   for (std::size_t v = 0; v < 3; ++v) {
     const std::string id = kPoseVariables[v], name = kShort[v], unit = kUnits[v];
     maker.add(table, "e_max_" + id, fmt::format("e_{},max", name), unit, id,
-              [t, v](const Outcome& o) { return o.errors.at(t).variables[v].max; });
+              [t, v](const VerifyOutcome& o) { return o.errors.at(t).variables[v].max; });
     maker.add(table, "e_sr_" + id, fmt::format("e_{},sr", name), unit, id,
-              [t, v](const Outcome& o) { return o.errors.at(t).variables[v].mean; });
+              [t, v](const VerifyOutcome& o) { return o.errors.at(t).variables[v].mean; });
     maker.add(table, "sigma_" + id, fmt::format("σ_{}", name), unit, id,
-              [t, v](const Outcome& o) { return o.errors.at(t).variables[v].sigma; });
+              [t, v](const VerifyOutcome& o) { return o.errors.at(t).variables[v].sigma; });
   }
   return table;
 }
@@ -179,8 +179,8 @@ Table totals_table(const TableMaker& maker, int repeats) {
   Table table = maker.start("verify.totals", "Total error of the new drives");
   for (std::size_t v = 0; v < 3; ++v)
     maker.add(table, fmt::format("sum_e_sr_{}", kPoseVariables[v]), fmt::format("Σ e_{},sr", kShort[v]),
-              kUnits[v], kPoseVariables[v], [v](const Outcome& o) { return o.totals.sums[v]; });
-  maker.add(table, "total", "total", "", "total", [](const Outcome& o) { return o.totals.total; });
+              kUnits[v], kPoseVariables[v], [v](const VerifyOutcome& o) { return o.totals.sums[v]; });
+  maker.add(table, "total", "total", "", "total", [](const VerifyOutcome& o) { return o.totals.total; });
   maker.add_change(table);
   table.notes.push_back(
       fmt::format("Means over {} repeats of all drives, ±: half the width of their 95 % interval; in "
@@ -194,9 +194,10 @@ Table arrival_table(const TableMaker& maker, const simulate::RecordingScenario& 
   Table table = maker.start("verify.arrival", "How far from the reference's end the robot really stopped");
   for (std::size_t t = 0; t < s.drives.size(); ++t) {
     const std::string& name = s.drives[t].name;
-    maker.add(table, "position_" + name, name, "m", name, [t](const Outcome& o) { return o.arrival[t][0]; });
+    maker.add(table, "position_" + name, name, "m", name,
+              [t](const VerifyOutcome& o) { return o.arrival[t][0]; });
     maker.add(table, "heading_" + name, "heading", "rad", name,
-              [t](const Outcome& o) { return o.arrival[t][1]; });
+              [t](const VerifyOutcome& o) { return o.arrival[t][1]; });
   }
   return table;
 }

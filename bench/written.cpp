@@ -4,18 +4,11 @@
 #include "base/sha256.hpp"
 
 namespace odobench {
-namespace {
-
-Column column(const char* id, const char* unit = "", Align align = Align::Right) {
-  return {id, id, unit, "", "", align};
-}
-
-}  // namespace
 
 Table written_table(const std::vector<std::filesystem::path>& files) {
   Table table{"written",
               "Files written",
-              {column("file", "", Align::Left), column("bytes"), column("sha256", "", Align::Left)},
+              {text_column("file"), number_column("bytes"), text_column("sha256")},
               {},
               {}};
   for (const std::filesystem::path& file : files) {
@@ -34,8 +27,8 @@ Table dataset_table(const Dataset& dataset) {
   }
   return {"dataset",
           "Data set " + dataset.name,
-          {column("name", "", Align::Left), column("trajectories"), column("recordings"), column("samples"),
-           column("duration", "s")},
+          {text_column("name"), number_column("trajectories"), number_column("recordings"),
+           number_column("samples"), number_column("duration", "duration", "s")},
           {{text_cell(dataset.name), count_cell(static_cast<double>(dataset.trajectories.size())),
             count_cell(static_cast<double>(dataset.recordings.size())), count_cell(samples),
             fixed_cell(seconds, 3)}},

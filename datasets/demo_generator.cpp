@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angle.hpp"
 #include "datasets/noise.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
-constexpr int kRepetitions = 5;
+constexpr int kDemoRepetitions = 5;
 
 constexpr std::int64_t kPeriod_us = 125'000;
 constexpr double kJitter_us = 6'000;
@@ -176,7 +174,7 @@ Dataset make_demo_dataset(std::uint64_t seed) {
   d.provenance.licence = "MIT";
   d.provenance.made_by = fmt::format("bench demo --seed={}", seed);
   for (std::size_t t = 0; t < d.trajectories.size(); ++t)
-    for (int repetition = 1; repetition <= kRepetitions; ++repetition) {
+    for (int repetition = 1; repetition <= kDemoRepetitions; ++repetition) {
       Noise noise(mixed_seed(seed, d.recordings.size()));
       Recording r = make_recording(kCommands[t], d.robot, noise);
       r.trajectory = d.trajectories[t].name;

@@ -11,7 +11,7 @@
 namespace odobench {
 namespace {
 
-constexpr const char* kFormat = "entropy-window-1";
+constexpr const char* kWindowFormat = "entropy-window-1";
 constexpr std::int64_t kMostSamples = 10000;
 
 double finite(const JsonNode& node) {
@@ -88,8 +88,9 @@ EntropyWindow window_from(const JsonNode& node) {
 
 std::vector<EntropyWindow> load_entropy_windows(const std::filesystem::path& file) {
   const JsonNode root = JsonNode::read(file);
-  if (root.at("format").text() != kFormat)
-    root.at("format").fail(fmt::format("\"{}\"", root.at("format").text()), fmt::format("\"{}\"", kFormat));
+  if (root.at("format").text() != kWindowFormat)
+    root.at("format").fail(fmt::format("\"{}\"", root.at("format").text()),
+                           fmt::format("\"{}\"", kWindowFormat));
   std::vector<EntropyWindow> windows;
   std::set<std::string> ids;
   for (const JsonNode& node : root.at("windows").elements()) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLongestHeader = 64 * 1024;
 constexpr std::size_t kEntryBytes = 8;
-constexpr std::string_view kFormat = "odobench-recording";
+constexpr std::string_view kRecordingFormat = "odobench-recording";
 
 static_assert(sizeof(double) == kEntryBytes && sizeof(std::int64_t) == kEntryBytes);
 static_assert(std::endian::native == std::endian::little || std::endian::native == std::endian::big);
@@ -46,8 +46,8 @@ void extract(std::string_view bytes, std::vector<T>& values) {
 // '.'.
 std::string header(const Recording& recording) {
   std::string line =
-      fmt::format(R"({{"format": "{}", "version": {}, "id": "{}", "samples": {}, "columns": [)", kFormat,
-                  kRecordingFormatVersion, recording.id, recording.size());
+      fmt::format(R"({{"format": "{}", "version": {}, "id": "{}", "samples": {}, "columns": [)",
+                  kRecordingFormat, kRecordingFormatVersion, recording.id, recording.size());
   line += R"({"name": "time_us", "unit": "us", "type": "int64"})";
   for_each_value_column(
       recording, [&](const std::string& name, const char* unit, const std::vector<double>&) {
@@ -88,7 +88,8 @@ std::size_t check_header(std::string_view bytes, const ExpectedRecording& expect
                                 expected.file, std::min(bytes.size(), kLongestHeader)));
   const JsonNode root = JsonNode::parse(bytes.substr(0, newline), expected.file);
   const JsonNode format = root.at("format");
-  if (format.text() != kFormat) format.fail('"' + format.text() + '"', fmt::format("\"{}\"", kFormat));
+  if (format.text() != kRecordingFormat)
+    format.fail('"' + format.text() + '"', fmt::format("\"{}\"", kRecordingFormat));
   const JsonNode version = root.at("version");
   if (version.integer() != kRecordingFormatVersion)
     version.fail(fmt::format("version {}", version.integer()),

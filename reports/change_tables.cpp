@@ -12,14 +12,6 @@ namespace {
 constexpr int kValueDigits = 8;
 constexpr int kChangeDigits = 3;
 
-Column column(const char* id, const char* name, const char* unit = "", const char* group = "",
-              Align align = Align::Right) {
-  return {id, name, unit, "", group, align};
-}
-Column text_column(const char* id, const char* name) {
-  return column(id, name, "", "", Align::Left);
-}
-
 bool several_groups(const RunComparison& comparison) {
   return std::any_of(comparison.changes.begin(), comparison.changes.end(), [&](const Change& c) {
     return c.problem != comparison.changes.front().problem || c.dataset != comparison.changes.front().dataset;
@@ -53,9 +45,9 @@ Cell limit_cell(const Change& c) {
 }
 
 std::vector<Column> name_columns(bool machine) {
-  if (!machine) return {text_column("result", "result")};
-  return {text_column("problem", "problem"), text_column("dataset", "data set"),
-          text_column("label", "label"), text_column("metric", "metric"), text_column("unit", "unit")};
+  if (!machine) return {text_column("result")};
+  return {text_column("problem"), text_column("dataset", "data set"), text_column("label"),
+          text_column("metric"), text_column("unit")};
 }
 
 std::vector<Cell> name_cells(const Change& c, bool machine, bool with_group) {
@@ -65,10 +57,10 @@ std::vector<Cell> name_cells(const Change& c, bool machine, bool with_group) {
 }
 
 void append_change_columns(std::vector<Column>& columns) {
-  columns.push_back(column("old", "old", "", "median"));
-  columns.push_back(column("new", "new", "", "median"));
-  columns.push_back(column("change", "change", "", "median"));
-  columns.push_back(column("change_percent", "change", "%", "median"));
+  columns.push_back(number_column("old", "old", "", "median"));
+  columns.push_back(number_column("new", "new", "", "median"));
+  columns.push_back(number_column("change", "change", "", "median"));
+  columns.push_back(number_column("change_percent", "change", "%", "median"));
 }
 
 void append_change(std::vector<Cell>& cells, const Change& c) {
@@ -81,10 +73,10 @@ void append_change(std::vector<Cell>& cells, const Change& c) {
 Table changed_table(const RunComparison& comparison, bool machine, bool with_group) {
   Table table{"changed", "What changed", name_columns(machine), {}, {}};
   append_change_columns(table.columns);
-  table.columns.push_back(column("p_holm", "p (Holm)", "", "test"));
-  table.columns.push_back(text_column("effect", "effect"));
-  table.columns.push_back(text_column("finding", "finding"));
-  table.columns.push_back(text_column("limit", "limit"));
+  table.columns.push_back(number_column("p_holm", "p (Holm)", "", "test"));
+  table.columns.push_back(text_column("effect"));
+  table.columns.push_back(text_column("finding"));
+  table.columns.push_back(text_column("limit"));
   table.columns.back().mark_name = "outcome";
   for (const Change& c : comparison.changes) {
     if (!listed_as_changed(c)) continue;
@@ -108,17 +100,17 @@ Table changed_table(const RunComparison& comparison, bool machine, bool with_gro
 
 Table all_table(const RunComparison& comparison, bool machine, bool with_group) {
   Table table{"changes", "All results, old and new", name_columns(machine), {}, {}};
-  table.columns.push_back(column("runs_old", "old runs", "", "runs"));
-  table.columns.push_back(column("runs_new", "new runs", "", "runs"));
+  table.columns.push_back(number_column("runs_old", "old runs", "", "runs"));
+  table.columns.push_back(number_column("runs_new", "new runs", "", "runs"));
   append_change_columns(table.columns);
-  table.columns.push_back(column("shift", "shift", "", "test"));
-  table.columns.push_back(column("a12", "A12", "", "test"));
-  table.columns.push_back(column("p", "p", "", "test"));
-  table.columns.push_back(column("p_holm", "p (Holm)", "", "test"));
-  table.columns.push_back(text_column("effect", "effect"));
+  table.columns.push_back(number_column("shift", "shift", "", "test"));
+  table.columns.push_back(number_column("a12", "A12", "", "test"));
+  table.columns.push_back(number_column("p", "p", "", "test"));
+  table.columns.push_back(number_column("p_holm", "p (Holm)", "", "test"));
+  table.columns.push_back(text_column("effect"));
   table.columns.push_back(text_column("basis", "test"));
-  table.columns.push_back(text_column("finding", "finding"));
-  table.columns.push_back(text_column("limit", "limit"));
+  table.columns.push_back(text_column("finding"));
+  table.columns.push_back(text_column("limit"));
   table.columns.back().mark_name = "outcome";
   for (const Change& c : comparison.changes) {
     std::vector<Cell> cells = name_cells(c, machine, with_group);
@@ -146,13 +138,12 @@ Table all_table(const RunComparison& comparison, bool machine, bool with_group) 
 }
 
 Table one_sided_table(const RunComparison& comparison) {
-  Table table{
-      "one_sided",
-      "On one side only",
-      {text_column("label", "label"), text_column("problem", "problem"), text_column("dataset", "data set"),
-       text_column("metric", "metric"), text_column("side", "only in"), text_column("remark", "other side")},
-      {},
-      {}};
+  Table table{"one_sided",
+              "On one side only",
+              {text_column("label"), text_column("problem"), text_column("dataset", "data set"),
+               text_column("metric"), text_column("side", "only in"), text_column("remark", "other side")},
+              {},
+              {}};
   for (const OneSided& o : comparison.one_sided)
     table.rows.push_back({text_cell(o.label), text_cell(o.problem), text_cell(o.dataset),
                           text_cell(o.metric.empty() ? "all" : o.metric), text_cell(o.in_old ? "old" : "new"),
@@ -163,9 +154,9 @@ Table one_sided_table(const RunComparison& comparison) {
 Table verdict_table(const RunComparison& comparison) {
   Table table{"verdict",
               verdict(comparison),
-              {text_column("verdict", "verdict"), column("compared", "compared"), column("better", "better"),
-               column("worse", "worse"), column("changed", "changed"), column("gated", "gated"),
-               column("failed", "failed"), column("one_sided", "on one side")},
+              {text_column("verdict"), number_column("compared"), number_column("better"),
+               number_column("worse"), number_column("changed"), number_column("gated"),
+               number_column("failed"), number_column("one_sided", "on one side")},
               {},
               {}};
   const auto count = [&](Finding f) { return count_cell(static_cast<double>(comparison.count(f))); };

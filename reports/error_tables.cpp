@@ -22,14 +22,6 @@ constexpr const char* kDefinition =
     "e_max, e_sr, σ: maximum, mean and sample standard deviation (n-1) over the repetitions of the largest "
     "|estimate - reference| of a recording.";
 
-Column key_column(const char* id) {
-  Column column;
-  column.id = id;
-  column.name = id;
-  column.align = Align::Left;
-  return column;
-}
-
 std::vector<Column> error_columns() {
   std::vector<Column> columns;
   for (std::size_t v = 0; v < 3; ++v) {
@@ -51,8 +43,8 @@ class ErrorNoise {
     if (row.runs.size() < 2) return;
     for (const RunRecord* run : row.runs) all_[run] = error_statistics(run->errors);
   }
-  using Figure = std::function<std::optional<double>(const std::vector<TrajectoryErrors>&)>;
-  std::optional<double> of(const Figure& figure) const {
+  using FigureOfErrors = std::function<std::optional<double>(const std::vector<TrajectoryErrors>&)>;
+  std::optional<double> of(const FigureOfErrors& figure) const {
     return noise_over_runs(row_, [&](const RunRecord& run) -> std::optional<double> {
       const auto found = all_.find(&run);
       return found == all_.end() || found->second.empty() ? std::nullopt : figure(found->second);
@@ -113,7 +105,7 @@ Table trajectory_table(const Comparison& comparison, const std::string& trajecto
   Table table;
   table.id = comparison.id_prefix + "errors." + trajectory;
   table.title = fmt::format("Errors on trajectory {}{}", trajectory, comparison.title_suffix);
-  table.columns.push_back(key_column("parameters"));
+  table.columns.push_back(text_column("parameters"));
   for (Column& column : error_columns()) table.columns.push_back(best_if(Better::Lower, std::move(column)));
   const ComparisonRow* nominal = comparison.nominal();
   const TrajectoryErrors* reference = nominal ? find_trajectory(nominal->errors, trajectory) : nullptr;
@@ -217,7 +209,7 @@ std::optional<Table> error_overview(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "errors";
   table.title = fmt::format("Errors of parameters {}{}", row.label, comparison.title_suffix);
-  table.columns.push_back(key_column("trajectory"));
+  table.columns.push_back(text_column("trajectory"));
   for (Column& column : error_columns()) table.columns.push_back(std::move(column));
   for (const TrajectoryErrors& trajectory : row.errors) {
     std::vector<Cell> cells{text_cell(trajectory.trajectory)};
@@ -234,7 +226,7 @@ std::optional<Table> totals_table(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "totals";
   table.title = fmt::format("Total error{}", comparison.title_suffix);
-  table.columns = {key_column("parameters"),
+  table.columns = {text_column("parameters"),
                    sum_column("sum_e_sr_x", "Σ e_x,sr", "m", "$\\sum e_{x,\\mathrm{sr}}$"),
                    sum_column("sum_e_sr_y", "Σ e_y,sr", "m", "$\\sum e_{y,\\mathrm{sr}}$"),
                    sum_column("sum_e_sr_theta", "Σ e_θ,sr", "rad", "$\\sum e_{\\theta,\\mathrm{sr}}$"),

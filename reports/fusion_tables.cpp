@@ -10,15 +10,6 @@
 namespace odobench {
 namespace {
 
-Column column(const char* id, const char* name, const char* unit = "", Align align = Align::Right) {
-  Column c;
-  c.id = id;
-  c.name = name;
-  c.unit = unit;
-  c.align = align;
-  return c;
-}
-
 Cell band_cell(double lower, double upper) {
   return text_cell(fmt::format("{:.2f} .. {:.2f}", lower, upper));
 }
@@ -27,13 +18,13 @@ Table consistency_table(const std::vector<FusionRow>& rows) {
   Table table;
   table.id = "consistency";
   table.title = "Root mean square errors, and whether the covariance says so";
-  table.columns = {column("label", "parameters", "", Align::Left),
-                   best_if(Better::Lower, column("rmse_position", "RMSE position", "m")),
-                   best_if(Better::Lower, column("rmse_heading", "RMSE heading", "rad")),
-                   column("nees", "NEES"),
-                   column("nees_band", "95 % band"),
-                   column("nees_inside", "inside", "%"),
-                   column("verdict", "verdict", "", Align::Left)};
+  table.columns = {text_column("label", "parameters"),
+                   best_if(Better::Lower, number_column("rmse_position", "RMSE position", "m")),
+                   best_if(Better::Lower, number_column("rmse_heading", "RMSE heading", "rad")),
+                   number_column("nees", "NEES"),
+                   number_column("nees_band", "95 % band"),
+                   number_column("nees_inside", "inside", "%"),
+                   text_column("verdict")};
   for (const FusionRow& row : rows) {
     std::vector<Cell> cells{text_cell(row.label), fixed_cell(row.rmse_position, 6),
                             fixed_cell(row.rmse_heading, 6)};
@@ -62,14 +53,14 @@ Table innovation_table(const std::vector<FusionRow>& rows) {
   Table table;
   table.id = "innovations";
   table.title = "Innovations by sensor";
-  table.columns = {column("label", "parameters", "", Align::Left),
-                   column("sensor", "sensor", "", Align::Left),
-                   column("used", "used"),
-                   column("rejected", "rejected"),
-                   column("late", "late"),
-                   column("nis", "NIS"),
-                   column("expected", "expected"),
-                   column("nis_band", "95 % band")};
+  table.columns = {text_column("label", "parameters"),
+                   text_column("sensor"),
+                   number_column("used"),
+                   number_column("rejected"),
+                   number_column("late"),
+                   number_column("nis", "NIS"),
+                   number_column("expected"),
+                   number_column("nis_band", "95 % band")};
   for (const FusionRow& row : rows)
     for (const FusionSensorRow& s : row.sensors)
       table.rows.push_back({text_cell(row.label), text_cell(s.name), count_cell(s.used),

@@ -13,7 +13,7 @@
 namespace odobench {
 namespace {
 
-using Figure = std::function<std::optional<double>(std::size_t)>;  // of a run by its place in the row
+using FigureOfRun = std::function<std::optional<double>(std::size_t)>;  // of a run by its place in the row
 
 struct Direction {
   const char* prefix;
@@ -63,7 +63,7 @@ class Collector {
  private:
   const RunRecord& run(std::size_t i) const { return *row_.runs[i]; }
 
-  void add(Metric metric, const Figure& figure) {
+  void add(Metric metric, const FigureOfRun& figure) {
     const double worst = metric.better == Better::Lower    ? std::numeric_limits<double>::infinity()
                          : metric.better == Better::Higher ? -std::numeric_limits<double>::infinity()
                                                            : std::numeric_limits<double>::quiet_NaN();

@@ -11,8 +11,6 @@
 namespace odobench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Both samples in one list; doubled midranks, which are integers even with ties.
 struct Ranked {
   std::size_t before = 0, after = 0;
@@ -37,7 +35,7 @@ Ranked ranks_of(const std::vector<double>& before, const std::vector<double>& af
   std::vector<double> values = before;
   values.insert(values.end(), after.begin(), after.end());
   for (double& value : values)
-    if (std::isnan(value)) value = kInfinity;
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });

@@ -13,7 +13,7 @@ constexpr const char* kStarNote = "*: best of its column.";
 constexpr int kNarrowest = 24;  // text columns are wrapped down to this width before a table is split
 
 // One column laid out: numbers stand under numbers and brackets under brackets.
-struct Layout {
+struct ConsoleColumn {
   std::size_t column = 0;
   std::vector<CellText> cells;
   int head = 0, tail = 0;  // widths
@@ -28,9 +28,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-Layout lay_out(const Table& table, std::size_t column, bool bold) {
+ConsoleColumn lay_out(const Table& table, std::size_t column, bool bold) {
   const Column& spec = table.columns[column];
-  Layout out;
+  ConsoleColumn out;
   out.column = column;
   out.wraps = spec.align == Align::Left;
   for (const auto& row : table.rows) {
@@ -50,17 +50,17 @@ Layout lay_out(const Table& table, std::size_t column, bool bold) {
   return out;
 }
 
-int total_width(const std::vector<Layout>& columns, bool narrowest) {
+int total_width(const std::vector<ConsoleColumn>& columns, bool narrowest) {
   int width = -kGutter;
-  for (const Layout& c : columns) width += kGutter + (narrowest ? c.narrowest : c.width);
+  for (const ConsoleColumn& c : columns) width += kGutter + (narrowest ? c.narrowest : c.width);
   return width;
 }
 
 // Takes from the widest column that may still give, until the block fits.
-void shrink(std::vector<Layout>& columns, int limit) {
+void shrink(std::vector<ConsoleColumn>& columns, int limit) {
   for (int excess = total_width(columns, false) - limit; excess > 0; --excess) {
-    Layout* widest = nullptr;
-    for (Layout& c : columns)
+    ConsoleColumn* widest = nullptr;
+    for (ConsoleColumn& c : columns)
       if (c.width > c.narrowest && (widest == nullptr || c.width > widest->width)) widest = &c;
     if (widest == nullptr) return;
     --widest->width;
@@ -69,15 +69,15 @@ void shrink(std::vector<Layout>& columns, int limit) {
 
 // Blocks of columns that fit, each beginning with the first column; a group is cut only when it alone is too
 // wide.
-std::vector<std::vector<Layout>> split(const Table& table, int limit, bool bold) {
-  const Layout key = lay_out(table, 0, bold);
-  std::vector<std::vector<Layout>> blocks{{key}};
+std::vector<std::vector<ConsoleColumn>> split(const Table& table, int limit, bool bold) {
+  const ConsoleColumn key = lay_out(table, 0, bold);
+  std::vector<std::vector<ConsoleColumn>> blocks{{key}};
   for (std::size_t at = 1; at < table.columns.size();) {
     std::size_t end = at + 1;
     while (end < table.columns.size() && !table.columns[at].group.empty() &&
            table.columns[end].group == table.columns[at].group)
       ++end;
-    std::vector<Layout> group, extended = blocks.back();
+    std::vector<ConsoleColumn> group, extended = blocks.back();
     for (; at < end; ++at) group.push_back(lay_out(table, at, bold));
     extended.insert(extended.end(), group.begin(), group.end());
     if (total_width(extended, true) <= limit) {
@@ -85,7 +85,7 @@ std::vector<std::vector<Layout>> split(const Table& table, int limit, bool bold)
       continue;
     }
     if (blocks.back().size() > 1) blocks.push_back({key});
-    for (Layout& column : group) {
+    for (ConsoleColumn& column : group) {
       blocks.back().push_back(column);
       if (blocks.back().size() > 2 && total_width(blocks.back(), true) > limit) {
         blocks.back().pop_back();
@@ -105,10 +105,10 @@ std::string padded(const std::string& text, int width, Align align) {
   return align == Align::Right ? pad_left(text, width) : pad_right(text, width);
 }
 
-void append_header(std::string& out, const Table& table, const std::vector<Layout>& block) {
+void append_header(std::string& out, const Table& table, const std::vector<ConsoleColumn>& block) {
   std::string names, units;
   bool any_unit = false;
-  for (const Layout& c : block) {
+  for (const ConsoleColumn& c : block) {
     const Column& column = table.columns[c.column];
     const std::string gutter = c.column == block.front().column ? "" : std::string(kGutter, ' ');
     const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
@@ -128,11 +128,11 @@ std::string in_bold(const std::string& cell) {
          cell.substr(end + 1);
 }
 
-void append_row(std::string& out, const Table& table, const std::vector<Layout>& block, std::size_t row,
-                bool bold) {
+void append_row(std::string& out, const Table& table, const std::vector<ConsoleColumn>& block,
+                std::size_t row, bool bold) {
   std::vector<std::vector<std::string>> lines;
   std::size_t height = 1;
-  for (const Layout& c : block) {
+  for (const ConsoleColumn& c : block) {
     const CellText& text = c.cells[row];
     const Align align = table.columns[c.column].align;
     if (c.wraps) {
@@ -163,9 +163,9 @@ std::string rule(int width) {
 
 void append_table(std::string& out, const Table& table, int limit, bool bold, bool explain) {
   for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
-  std::vector<std::vector<Layout>> blocks = split(table, limit, bold);
+  std::vector<std::vector<ConsoleColumn>> blocks = split(table, limit, bold);
   std::vector<int> widths;
-  for (std::vector<Layout>& block : blocks) {
+  for (std::vector<ConsoleColumn>& block : blocks) {
     shrink(block, limit);
     widths.push_back(total_width(block, false));
   }

@@ -71,7 +71,7 @@ std::string difference_text(const Cell& cell) {
 }
 
 // One column of the table: up to three of the tabular.
-struct Layout {
+struct LatexColumn {
   std::size_t column = 0;
   bool numbers = false, differences = false, marks = false;
   NumberShape shape;
@@ -83,9 +83,9 @@ struct Layout {
   std::size_t parts() const { return 1u + (differences ? 1 : 0) + (marks ? 1 : 0); }
 };
 
-Layout lay_out(const Table& table, std::size_t c) {
+LatexColumn lay_out(const Table& table, std::size_t c) {
   const Column& column = table.columns[c];
-  Layout out;
+  LatexColumn out;
   out.column = c;
   int text = 0, difference = 0, mark = 0;
   for (const auto& row : table.rows) {
@@ -117,24 +117,24 @@ Layout lay_out(const Table& table, std::size_t c) {
   return out;
 }
 
-using Block = std::vector<Layout>;
+using LatexBlock = std::vector<LatexColumn>;
 
-double total_width(const Block& block) {
+double total_width(const LatexBlock& block) {
   double width = 0;
-  for (const Layout& c : block) width += c.width + kGap;
+  for (const LatexColumn& c : block) width += c.width + kGap;
   return width;
 }
 
 // As on the console: whole groups while they fit, each block beginning with the first column.
-std::vector<Block> split(const Table& table) {
-  const Layout key = lay_out(table, 0);
-  std::vector<Block> blocks{{key}};
+std::vector<LatexBlock> split(const Table& table) {
+  const LatexColumn key = lay_out(table, 0);
+  std::vector<LatexBlock> blocks{{key}};
   for (std::size_t at = 1; at < table.columns.size();) {
     std::size_t end = at + 1;
     while (end < table.columns.size() && !table.columns[at].group.empty() &&
            table.columns[end].group == table.columns[at].group)
       ++end;
-    Block group, extended = blocks.back();
+    LatexBlock group, extended = blocks.back();
     for (; at < end; ++at) group.push_back(lay_out(table, at));
     extended.insert(extended.end(), group.begin(), group.end());
     if (total_width(extended) <= kFootnoteLine) {
@@ -142,7 +142,7 @@ std::vector<Block> split(const Table& table) {
       continue;
     }
     if (blocks.back().size() > 1) blocks.push_back({key});
-    for (const Layout& column : group) {
+    for (const LatexColumn& column : group) {
       if (blocks.back().size() > 1 && total_width(blocks.back()) + column.width + kGap > kFootnoteLine)
         blocks.push_back({key});
       blocks.back().push_back(column);
@@ -152,10 +152,10 @@ std::vector<Block> split(const Table& table) {
 }
 
 // What a block leaves of the line goes to its wrapped columns, the narrowest first.
-void widen(Block& block, double line) {
+void widen(LatexBlock& block, double line) {
   for (double rest = line - total_width(block); rest >= 1; rest -= 1) {
-    Layout* narrowest = nullptr;
-    for (Layout& c : block)
+    LatexColumn* narrowest = nullptr;
+    for (LatexColumn& c : block)
       if (c.wraps && c.width < c.natural && (narrowest == nullptr || c.width < narrowest->width))
         narrowest = &c;
     if (narrowest == nullptr) return;
@@ -163,7 +163,7 @@ void widen(Block& block, double line) {
   }
 }
 
-std::string column_specification(const Layout& c, const Column& column) {
+std::string column_specification(const LatexColumn& c, const Column& column) {
   std::string out;
   if (c.numbers)
     out = fmt::format("S[table-format={}]", c.shape.format());
@@ -176,7 +176,7 @@ std::string column_specification(const Layout& c, const Column& column) {
   return out;
 }
 
-std::string heading_text(const Layout& c, const Column& column) {
+std::string heading_text(const LatexColumn& c, const Column& column) {
   if (!column.latex.empty()) return column.latex;
   if (c.heading.size() == 1) return latex_text(c.heading[0]);
   std::string lines;
@@ -185,13 +185,13 @@ std::string heading_text(const Layout& c, const Column& column) {
 }
 
 // A cell of a heading over all parts of the column. Braces keep siunitx from reading it as a number.
-std::string over_parts(const Layout& c, const std::string& text) {
+std::string over_parts(const LatexColumn& c, const std::string& text) {
   if (c.parts() > 1) return fmt::format("\\multicolumn{{{}}}{{c}}{{{}}}", c.parts(), text);
   return c.numbers ? "{" + text + "}" : text;
 }
 
 // The name of a group is shown unless its columns say it themselves: a1, a2 of a.
-std::string group_heading(const Table& table, const Block& block, std::size_t begin, std::size_t end) {
+std::string group_heading(const Table& table, const LatexBlock& block, std::size_t begin, std::size_t end) {
   const std::string& group = table.columns[block[begin].column].group;
   if (group.empty() || end - begin < 2) return "";
   bool all_say_so = true, one_is_it = false;
@@ -208,7 +208,7 @@ std::string group_heading(const Table& table, const Block& block, std::size_t be
   return latex_text(name);
 }
 
-std::string group_row(const Table& table, const Block& block) {
+std::string group_row(const Table& table, const LatexBlock& block) {
   std::string names, rules;
   std::size_t first = 1;  // part that the group begins with, counted from 1
   for (std::size_t begin = 0; begin < block.size();) {
@@ -226,7 +226,7 @@ std::string group_row(const Table& table, const Block& block) {
   return rules.empty() ? "" : names + " \\\\\n" + rules + "\n";
 }
 
-std::string header(const Table& table, const Block& block) {
+std::string header(const Table& table, const LatexBlock& block) {
   std::string names, units;
   bool any_unit = false;
   for (std::size_t k = 0; k < block.size(); ++k) {
@@ -240,7 +240,7 @@ std::string header(const Table& table, const Block& block) {
   return group_row(table, block) + names + " \\\\\n" + (any_unit ? units + " \\\\\n" : "");
 }
 
-std::string cell_latex(const Layout& c, const Cell& cell, bool first) {
+std::string cell_latex(const LatexColumn& c, const Cell& cell, bool first) {
   const std::string bold = cell.best ? "\\bfseries " : "";
   std::string out;
   if (is_number(cell)) {
@@ -263,9 +263,9 @@ std::string cell_latex(const Layout& c, const Cell& cell, bool first) {
   return out;
 }
 
-std::string block_latex(const Table& table, const Block& block, std::size_t begin, std::size_t end) {
+std::string block_latex(const Table& table, const LatexBlock& block, std::size_t begin, std::size_t end) {
   std::string columns;
-  for (const Layout& c : block) columns += column_specification(c, table.columns[c.column]);
+  for (const LatexColumn& c : block) columns += column_specification(c, table.columns[c.column]);
   // Shrinks only what is wider than the line.
   std::string out =
       "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{" +
@@ -286,11 +286,11 @@ std::string notes_latex(const Table& table) {
 }
 
 // Lines that a row takes in all blocks.
-std::size_t height(const Table& table, const std::vector<Block>& blocks, std::size_t row) {
+std::size_t height(const Table& table, const std::vector<LatexBlock>& blocks, std::size_t row) {
   std::size_t sum = 0;
-  for (const Block& block : blocks) {
+  for (const LatexBlock& block : blocks) {
     std::size_t lines = 1;
-    for (const Layout& c : block)
+    for (const LatexColumn& c : block)
       if (c.wraps)
         lines = std::max(lines, static_cast<std::size_t>(
                                     std::ceil(display_width(table.rows[row][c.column].text) / c.width)));
@@ -300,10 +300,10 @@ std::size_t height(const Table& table, const std::vector<Block>& blocks, std::si
 }
 
 std::string table_latex(const Table& table) {
-  std::vector<Block> blocks = split(table);
+  std::vector<LatexBlock> blocks = split(table);
   const bool small = std::all_of(blocks.begin(), blocks.end(),
-                                 [](const Block& block) { return total_width(block) <= kSmallLine; });
-  for (Block& block : blocks) widen(block, small ? kSmallLine : kFootnoteLine);
+                                 [](const LatexBlock& block) { return total_width(block) <= kSmallLine; });
+  for (LatexBlock& block : blocks) widen(block, small ? kSmallLine : kFootnoteLine);
   std::string out;
   std::size_t begin = 0;
   do {

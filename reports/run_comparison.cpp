@@ -15,7 +15,6 @@ namespace odobench {
 namespace {
 
 constexpr const char* kOtherBox = "another dimension or box";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double median_of(const std::vector<double>& values) {
   return spread(values).median;
@@ -61,9 +60,10 @@ void measure(Change& c) {
   c.new_median = median_of(c.after.values);
   // Two failed runs are equal, although infinity - infinity is not zero.
   c.change = c.old_median == c.new_median ? 0 : c.new_median - c.old_median;
-  c.relative = c.change == 0                               ? 0
-               : c.old_median == 0 || std::isinf(c.change) ? std::copysign(kInfinity, c.change)
-                                                           : c.change / std::abs(c.old_median);
+  c.relative = c.change == 0 ? 0
+               : c.old_median == 0 || std::isinf(c.change)
+                   ? std::copysign(std::numeric_limits<double>::infinity(), c.change)
+                   : c.change / std::abs(c.old_median);
   const std::vector<double> before = as_costs(c.before), after = as_costs(c.after);
   c.a12 = probability_lower(before, after);
   c.shift = median_shift(c.before.values, c.after.values);

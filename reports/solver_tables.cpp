@@ -11,11 +11,6 @@ namespace {
 constexpr int kCostDigits = 10;   // enough to see which solvers end in the same point
 constexpr int kSpreadDigits = 8;  // of random runs
 
-Column column(std::string id, std::string name, std::string unit, std::string group,
-              Align align = Align::Right, std::string latex = "") {
-  return {std::move(id), std::move(name), std::move(unit), std::move(latex), std::move(group), align};
-}
-
 Cell cost_cell(const std::optional<double>& cost) {
   return cost ? significant_cell(*cost, kCostDigits) : Cell{};
 }
@@ -67,10 +62,9 @@ struct GapReference {
 };
 
 std::vector<Column> cost_columns(const GapReference& gap) {
-  return {column("parameters", "parameters", "", "", Align::Left),
-          best_if(Better::Lower, column("cost", "J", "", "cost", Align::Right, "$J$")),
-          column("cost_ratio", "J / J_nominal", "", "cost", Align::Right, "$J / J_{\\mathrm{nominal}}$"),
-          best_if(Better::Lower, column("gap", gap.name(), "", "cost"))};
+  return {text_column("parameters"), best_if(Better::Lower, number_column("cost", "J", "", "cost", "$J$")),
+          number_column("cost_ratio", "J / J_nominal", "", "cost", "$J / J_{\\mathrm{nominal}}$"),
+          best_if(Better::Lower, number_column("gap", gap.name(), "", "cost"))};
 }
 
 std::vector<Cell> solver_row(const Comparison& comparison, const ComparisonRow& row, const GapReference& gap,
@@ -135,10 +129,10 @@ void append_spread(std::vector<Cell>& cells, const std::vector<double>& values, 
 
 void append_spread_columns(std::vector<Column>& columns, const std::string& id, const std::string& name,
                            const std::string& unit) {
-  columns.push_back(best_if(Better::Lower, column(id + "_median", name + " median", unit, id)));
-  columns.push_back(best_if(Better::Lower, column(id + "_min", "min", unit, id)));
-  columns.push_back(best_if(Better::Lower, column(id + "_max", "max", unit, id)));
-  columns.push_back(column(id + "_iqr", "IQR", unit, id));
+  columns.push_back(best_if(Better::Lower, number_column(id + "_median", name + " median", unit, id)));
+  columns.push_back(best_if(Better::Lower, number_column(id + "_min", "min", unit, id)));
+  columns.push_back(best_if(Better::Lower, number_column(id + "_max", "max", unit, id)));
+  columns.push_back(number_column(id + "_iqr", "IQR", unit, id));
 }
 
 // k of n runs; noise: the binomial standard deviation at (k + 1) / (n + 2), which is not zero for none or all.
@@ -177,13 +171,13 @@ Table solver_table(const Comparison& comparison) {
   const bool polished =
       std::any_of(comparison.rows.begin(), comparison.rows.end(),
                   [](const ComparisonRow& row) { return row.shown->cost_before_polish.has_value(); });
-  if (polished) table.columns.push_back(column("cost_before_polish", "J unpolished", "", "cost"));
-  table.columns.push_back(best_if(Better::Lower, column("evaluations", "evaluations", "", "effort")));
-  table.columns.push_back(column("iterations", "iterations", "", "effort"));
-  table.columns.push_back(best_if(Better::Lower, column("seconds", "time", "s", "effort")));
-  table.columns.push_back(column("termination", "stop", "", "stop", Align::Left));
-  table.columns.push_back(column("message", "reason", "", "stop", Align::Left));
-  table.columns.push_back(column("active_bounds", "active bounds", "", "stop", Align::Left));
+  if (polished) table.columns.push_back(number_column("cost_before_polish", "J unpolished", "", "cost"));
+  table.columns.push_back(best_if(Better::Lower, number_column("evaluations", "evaluations", "", "effort")));
+  table.columns.push_back(number_column("iterations", "iterations", "", "effort"));
+  table.columns.push_back(best_if(Better::Lower, number_column("seconds", "time", "s", "effort")));
+  table.columns.push_back(text_column("termination", "stop", "stop"));
+  table.columns.push_back(text_column("message", "reason", "stop"));
+  table.columns.push_back(text_column("active_bounds", "active bounds", "stop"));
   for (const ComparisonRow& row : comparison.rows) {
     add_reference(table, row);
     table.rows.push_back(solver_row(comparison, row, gap, polished));
@@ -199,7 +193,7 @@ Table cost_table(const Comparison& comparison) {
   table.title = fmt::format("Cost{}", comparison.title_suffix);
   const GapReference gap(comparison);
   table.columns = cost_columns(gap);
-  table.columns.push_back(column("active_bounds", "active bounds", "", "", Align::Left));
+  table.columns.push_back(text_column("active_bounds"));
   for (const ComparisonRow& row : comparison.rows) {
     add_reference(table, row);
     table.rows.push_back({text_cell(row.label), with_noise(cost_cell(row.shown->cost), cost_noise(row)),
@@ -214,10 +208,10 @@ std::optional<Table> repeats_table(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "repeats";
   table.title = fmt::format("Spread over repeated runs{}", comparison.title_suffix);
-  table.columns = {column("solver", "solver", "", "", Align::Left), column("runs", "runs", "", "success"),
-                   best_if(Better::Lower, column("failed", "failed", "", "success")),
-                   best_if(Better::Higher, column("within_1e-6", "within 1e-6", "", "success")),
-                   best_if(Better::Higher, column("within_1_percent", "within 1 %", "", "success"))};
+  table.columns = {text_column("solver"), number_column("runs", "runs", "", "success"),
+                   best_if(Better::Lower, number_column("failed", "failed", "", "success")),
+                   best_if(Better::Higher, number_column("within_1e-6", "within 1e-6", "", "success")),
+                   best_if(Better::Higher, number_column("within_1_percent", "within 1 %", "", "success"))};
   append_spread_columns(table.columns, "cost", "J", "");
   append_spread_columns(table.columns, "evaluations", "evaluations", "");
   append_spread_columns(table.columns, "seconds", "time", "s");

@@ -10,11 +10,6 @@
 namespace odobench {
 namespace {
 
-Column column(std::string id, std::string name, std::string group, Align align = Align::Right,
-              std::string unit = "") {
-  return {std::move(id), std::move(name), std::move(unit), "", std::move(group), align};
-}
-
 std::string family_of(const std::string& problem) {
   const auto colon = problem.find(':');
   return colon == std::string::npos ? "classic" : problem.substr(0, colon);
@@ -87,16 +82,17 @@ Table summary_table(const std::vector<Group>& groups) {
   Table table{
       "problems_summary",
       "All problems with a known answer",
-      {column("solver", "solver", "", Align::Left), column("family", "family", "", Align::Left),
-       column("problems", "problems", "success"), column("runs", "runs", "success"),
-       best_if(Better::Higher, column("solved", "solved", "success")),
-       column("converged_elsewhere", "converged elsewhere", "verdicts"),
-       column("false_verdicts", "false verdicts", "verdicts"),
-       best_if(Better::Higher, column("digits_median", "digits median", "digits")),
-       column("digits_min", "min", "digits"),
-       column("evaluations_median", "evaluations median", "evaluations"),
-       column("evaluations_max", "max", "evaluations"), column("evaluations_total", "total", "evaluations"),
-       column("seconds_total", "time total", "time", Align::Right, "s")},
+      {text_column("solver"), text_column("family"), number_column("problems", "problems", "", "success"),
+       number_column("runs", "runs", "", "success"),
+       best_if(Better::Higher, number_column("solved", "solved", "", "success")),
+       number_column("converged_elsewhere", "converged elsewhere", "", "verdicts"),
+       number_column("false_verdicts", "false verdicts", "", "verdicts"),
+       best_if(Better::Higher, number_column("digits_median", "digits median", "", "digits")),
+       number_column("digits_min", "min", "", "digits"),
+       number_column("evaluations_median", "evaluations median", "", "evaluations"),
+       number_column("evaluations_max", "max", "", "evaluations"),
+       number_column("evaluations_total", "total", "", "evaluations"),
+       number_column("seconds_total", "time total", "s", "time")},
       {},
       {"Solved: parameters to 6 digits (nist), J within 1e-6 of the lowest known (others; 1e-12 where that "
        "is "
@@ -116,10 +112,10 @@ Table unsolved_table(const std::vector<const RunRecord*>& runs) {
   Table table{
       "problems_unsolved",
       "Runs that did not reach the known answer",
-      {column("solver", "solver", "", Align::Left), column("problem", "problem", "", Align::Left),
-       column("cost", "J", "cost"), column("known", "lowest known J", "cost"),
-       column("digits", "digits", "cost"), column("evaluations", "evaluations", "effort"),
-       column("termination", "stop", "stop", Align::Left), column("message", "reason", "stop", Align::Left)},
+      {text_column("solver"), text_column("problem"), number_column("cost", "J", "", "cost"),
+       number_column("known", "lowest known J", "", "cost"), number_column("digits", "digits", "", "cost"),
+       number_column("evaluations", "evaluations", "", "effort"), text_column("termination", "stop", "stop"),
+       text_column("message", "reason", "stop")},
       {},
       {}};
   for (const RunRecord* r : runs) {

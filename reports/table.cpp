@@ -164,6 +164,21 @@ std::string file_extension(Format format) {
   return entry(format).extension;
 }
 
+Column text_column(std::string id, std::string name, std::string group) {
+  Column column = number_column(std::move(id), std::move(name), "", std::move(group));
+  column.align = Align::Left;
+  return column;
+}
+
+Column number_column(std::string id, std::string name, std::string unit, std::string group,
+                     std::string latex) {
+  if (name.empty()) {
+    name = id;
+    std::replace(name.begin(), name.end(), '_', ' ');
+  }
+  return {std::move(id), std::move(name), std::move(unit), std::move(latex), std::move(group)};
+}
+
 Column best_if(Better better, Column column) {
   column.better = better;
   return column;

@@ -51,6 +51,11 @@ struct Column {
   Better better = Better::None;
 };
 
+// A column of words, or of numbers. Without a name the id serves, its underscores as spaces.
+Column text_column(std::string id, std::string name = "", std::string group = "");
+Column number_column(std::string id, std::string name = "", std::string unit = "", std::string group = "",
+                     std::string latex = "");
+
 // The same column, in which the lowest or highest number is the best one.
 Column best_if(Better better, Column column);
 

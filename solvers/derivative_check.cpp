@@ -5,10 +5,11 @@
 #include <functional>
 #include <limits>
 
+#include "base/range.hpp"
+
 namespace odobench {
 namespace {
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFirstStep = 1e-2;
 constexpr double kShrink = 4;
 constexpr int kSteps = 11;  // down to 1e-8 of the scale

@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 
+#include "base/range.hpp"
 #include "solvers/boundary_map.hpp"
 #include "solvers/nlopt_algorithms.hpp"
 #include "solvers/optimality.hpp"
@@ -15,7 +16,6 @@
 namespace odobench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far below.
 constexpr double kStopValue = -1e200;
 constexpr double kBelowStopValue = -1e250;

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kTraceLimit = 400;
 // So many costs, not one of them finite: no method goes on from there.
 constexpr std::int64_t kHopeless = 1000;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/range.hpp"
 #include "solvers/box.hpp"
 #include "solvers/box_active_set.hpp"
 #include "solvers/box_quadratic.hpp"
@@ -18,7 +19,6 @@
 namespace odobench {
 namespace {
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 // Entries of a Jacobian that may be formed to see what the problem's own normal equations cannot resolve.
 constexpr Eigen::Index kMostEntries = 50'000'000;
 // Below this the squares of residuals have lost digits to underflow.

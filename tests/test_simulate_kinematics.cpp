@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angle.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/calibration_problem.hpp"
@@ -13,8 +13,6 @@
 
 namespace odobench::simulate {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 Parameters parameters(const nlohmann::json& list) {
   Parameters z{};

@@ -1,14 +1,13 @@
 #include <algorithm>
-#include <numbers>
 #include <string>
 
+#include "base/angle.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "datasets/simulate/scenario.hpp"
 
 namespace odobench::simulate {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTurn = 2 * kPi;
 constexpr double kToe = 25 * kPi / 180;  // rad
 constexpr double kFaster = 1.3;

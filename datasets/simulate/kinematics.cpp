@@ -1,12 +1,12 @@
 #include "datasets/simulate/kinematics.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "base/angle.hpp"
 
 namespace odobench::simulate {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStanding = 1e-9;  // m/s
 
 struct Contact {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "datasets/noise.hpp"
 #include "datasets/simulate/logging.hpp"
@@ -17,7 +17,6 @@
 namespace odobench::simulate {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLargeSteering = kPi / 6;  // above: steered before the drive begins
 constexpr double kFarSteering = kPi / 3;    // above: always
 constexpr double kSteeredBefore = 0.95;     // of such drives

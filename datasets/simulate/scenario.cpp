@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::simulate {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kMostPhases = 1000;  // every tick looks through them
 constexpr double kLongestDrive_s = 86'400, kLongestIdle_s = 3'600, kLongestDelay_s = 60;
 constexpr double kFastest = 1000;                       // m/s, rad/s, 1/s and factors of such

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
+
+#include "base/angle.hpp"
 
 namespace odobench::simulate {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kRpm = 2 * std::numbers::pi / 60;
+constexpr double kRpm = 2 * kPi / 60;
 
 void number(const JsonNode& node, const char* key, double& value, double unit = 1) {
   if (node.has(key)) value = node.at(key).number() * unit;

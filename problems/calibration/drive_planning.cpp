@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
+
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Eigenvalues of J'J below this share of the largest are what rounding leaves of zero.
 constexpr double kRounding = 1e-15;
 // Entries of a sparse direction below this share of its largest are left out of its words.

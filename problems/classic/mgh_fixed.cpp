@@ -21,10 +21,6 @@ Vector vector(std::initializer_list<double> values) {
   return v;
 }
 
-double square(double x) {
-  return x * x;
-}
-
 void rosenbrock(const ConstVectorRef& x, VectorRef r, MatrixRef* j) {
   r << 10 * (x[1] - x[0] * x[0]), 1 - x[0];
   if (j) *j << -20 * x[0], 10, -1, 0;

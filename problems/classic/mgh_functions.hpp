@@ -9,6 +9,10 @@
 
 namespace odobench {
 
+inline double square(double x) {
+  return x * x;
+}
+
 struct MghFunction {
   const char* name;
   const char* title;  // with its number in the paper

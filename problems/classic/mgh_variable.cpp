@@ -37,10 +37,6 @@ Vector parabola(int n) {
   return t.array() * (t.array() - 1.0);
 }
 
-double square(double x) {
-  return x * x;
-}
-
 // A polynomial p that should fulfil p' = 1 + p^2 at t_i = i / 29 and p(0) = 0.
 void watson(const ConstVectorRef& x, VectorRef r, MatrixRef* j) {
   for (Index i = 0; i < 29; ++i) {

@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
+
+#include "base/angle.hpp"
 
 namespace odobench {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // b1 (b2 + x)^(-1/b3); real only for b2 + x > 0 (a negative base has a real power for a few exponents only).

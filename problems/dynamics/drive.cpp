@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "base/angle.hpp"
 
 namespace odobench::dynamics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLongestDrive_s = 86'400, kHighestVoltage = 1'000;
 // How far the steps of DormandPrince reach on y' = -lambda y, lambda times the step.
 constexpr double kStableReach = 3.3;

@@ -7,6 +7,10 @@
 
 namespace odobench::dynamics {
 
+struct Vec2 {
+  double x = 0, y = 0;
+};
+
 // SI units. None of these values is in the thesis; the defaults are chosen for a wheel of this size.
 struct MotorParameters {
   double resistance = 2.0;     // R, ohm

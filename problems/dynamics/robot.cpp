@@ -11,10 +11,6 @@ namespace {
 // SI units; less is a typing error and makes the equations stiff beyond any step.
 constexpr double kLeastParameter = 1e-9;
 
-struct Vec2 {
-  double x = 0, y = 0;
-};
-
 PerWheel wheel_x(const RobotParameters& p) {
   return {-p.half_length, p.half_length, p.half_length, -p.half_length};
 }

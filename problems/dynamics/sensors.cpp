@@ -5,18 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <stdexcept>
+
+#include "base/angle.hpp"
 
 namespace odobench::dynamics {
 namespace {
 
 constexpr double kLargestVariance = 1e6;  // m^2, m^2/s^4, deg^2
-constexpr double kDegree = std::numbers::pi / 180;
-
-struct Vec2 {
-  double x = 0, y = 0;
-};
 
 Vec2 turned(const Vec2& v, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);

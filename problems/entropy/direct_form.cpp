@@ -5,7 +5,7 @@
 namespace odobench {
 namespace {
 
-using Increments = Eigen::Ref<const Eigen::VectorXd>;
+using IncrementsRef = Eigen::Ref<const Eigen::VectorXd>;
 
 // The measurements as (2.29) compares them.
 struct Measured {
@@ -68,7 +68,7 @@ void closed_axis(const EntropyConstants& c, const Axis& data, const Increment& d
 
 // Calls `term(difference, sigma)` for every term of (2.29) in its order: accelerations, encoders, gyro.
 template <class Term>
-void for_each_term(const Measured& measured, const Increments& increments, const EntropyState& state,
+void for_each_term(const Measured& measured, const IncrementsRef& increments, const EntropyState& state,
                    const Term& term) {
   const EntropyConstants& c = measured.c;
   const int big_n = c.samples;
@@ -106,7 +106,7 @@ void for_each_term(const Measured& measured, const Increments& increments, const
   }
 }
 
-EntropyState closed_form(const Measured& measured, const Increments& increments) {
+EntropyState closed_form(const Measured& measured, const IncrementsRef& increments) {
   const EntropyConstants& c = measured.c;
   const int big_n = c.samples;
   const double k = degrees_per_metre(c);
@@ -138,7 +138,7 @@ EntropyState closed_form(const Measured& measured, const Increments& increments)
   return state;
 }
 
-double hamiltonian(const Measured& measured, const Increments& increments, const EntropyState& state) {
+double hamiltonian(const Measured& measured, const IncrementsRef& increments, const EntropyState& state) {
   double h = 0;
   for_each_term(measured, increments, state,
                 [&](double difference, double sigma) { h -= difference * difference / (sigma * sigma); });
@@ -147,15 +147,15 @@ double hamiltonian(const Measured& measured, const Increments& increments, const
 
 }  // namespace
 
-EntropyState closed_form(const EntropyWindow& window, const Increments& increments) {
+EntropyState closed_form(const EntropyWindow& window, const IncrementsRef& increments) {
   return closed_form(Measured(window), increments);
 }
 
-double hamiltonian(const EntropyWindow& window, const Increments& increments, const EntropyState& state) {
+double hamiltonian(const EntropyWindow& window, const IncrementsRef& increments, const EntropyState& state) {
   return hamiltonian(Measured(window), increments, state);
 }
 
-void hamiltonian_residuals(const EntropyWindow& window, const Increments& increments,
+void hamiltonian_residuals(const EntropyWindow& window, const IncrementsRef& increments,
                            const EntropyState& state, Eigen::Ref<Eigen::VectorXd> residuals) {
   Eigen::Index i = 0;
   for_each_term(Measured(window), increments, state,

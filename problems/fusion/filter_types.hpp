@@ -1,22 +1,22 @@
-// What filters take and give besides models: options, innovations, records for a smoother; angles and triangular systems.
+// What filters take and give besides models: options, innovations, records for a smoother; their checks.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <Eigen/Core>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "base/angle.hpp"
 #include "problems/problem.hpp"
 
 namespace odobench {
 
-inline constexpr double kPi = 3.14159265358979323846;
-
-// To (-pi, pi]; an angle inside keeps its bits.
-inline double wrapped_angle(double a) {
-  if (a > -kPi && a <= kPi) return a;
-  const double r = std::remainder(a, 2 * kPi);
-  return r <= -kPi ? kPi : r;
+// Throws std::invalid_argument "FIELD is VALUE, expected EXPECTED" unless it is good and finite.
+inline void require(bool good, const char* field, double value, const char* expected) {
+  if (!good || !std::isfinite(value))
+    throw std::invalid_argument(fmt::format("{} is {}, expected {}", field, value, expected));
 }
 
 enum class FilterKind { Extended, Unscented };

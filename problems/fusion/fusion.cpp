@@ -12,11 +12,6 @@
 namespace odobench {
 namespace {
 
-void require(bool good, const char* field, double value, const char* expected) {
-  if (!good || !std::isfinite(value))
-    throw std::invalid_argument(fmt::format("{} is {}, expected {}", field, value, expected));
-}
-
 void check_sensor(const SensorStream& s) {
   const auto positive = [&](const char* field, double value) {
     if (!(value > 0) || !std::isfinite(value))

@@ -69,11 +69,6 @@ class Truth {
   std::vector<double> time_;
 };
 
-void require(bool good, const char* field, double value, const char* expected) {
-  if (!good || !std::isfinite(value))
-    throw std::invalid_argument(fmt::format("{} is {}, expected {}", field, value, expected));
-}
-
 void check(const StreamTiming& t) {
   require(t.rate_hz > 0 && t.rate_hz <= 1e5, "rate_hz", t.rate_hz, "more than 0 and at most 1e5");
   require(t.delay_s >= 0, "delay_s", t.delay_s, "a finite number >= 0");

@@ -78,7 +78,7 @@ mkdir -p "$runs"
 "$3" simulate --scenario=filter_turns --quiet --out="$runs/drive"
 "$3" filter --quiet --data="$runs/drive/sensors.csv" --truth="$runs/drive/truth.csv" --wheel-order=left-first --gap \
   --records="$runs/filter" >/dev/null
-"$3" report "$runs/run" "$runs/filter" "$runs/fusion" --out="$work/report.html"
+"$3" report "$runs/run" "$runs/filter" "$runs/fusion" --overwrite --out="$work/report.html"
 "$3" report "$runs/run" "$runs/filter" "$runs/fusion" --json >"$TABLES"
 unset FIGURES
 some='^(the page has|the schema|figure |data sets|opens|every section|every chart|tables)'
