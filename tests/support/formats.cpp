@@ -223,6 +223,18 @@ std::vector<Format> make_formats() {
          return {{"--config=" + f.file("c.json", b), "--problem=sphere", "--max-evals=40", "--time-limit=1",
                   "--threads=1", "--quiet"}};
        }},
+      {"options",  // a line each: solvers, the one that polishes, starting points, target
+       [] {
+         return std::vector<std::string>{"lm[gradient_tolerance=1e-8],pso[swarm=20]\nlm\nrandom\n1e-6",
+                                         "ga[population=20],cmaes[sigma=0.2]\nnlopt:bobyqa\nnominal\n0"};
+       },
+       [](Bytes b, Files) -> Commands {
+         std::vector<std::string> values = lines(b.substr(0, b.find('\0')));
+         values.resize(4);
+         return {{"--problem=sphere", "--max-evals=40", "--time-limit=1", "--threads=1", "--quiet",
+                  "--solver=" + values[0], "--polish=" + values[1], "--start=" + values[2],
+                  "--target=" + values[3]}};
+       }},
   };
 }
 
