@@ -9,27 +9,28 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "base/names.hpp"
 #include "base/text.hpp"
-#include "bench/check_command.hpp"
-#include "bench/compare_command.hpp"
-#include "bench/context.hpp"
-#include "bench/evaluate_command.hpp"
-#include "bench/faults.hpp"
-#include "bench/filter_arguments.hpp"
-#include "bench/filter_command.hpp"
-#include "bench/fusion_arguments.hpp"
-#include "bench/import_command.hpp"
-#include "bench/interrupt.hpp"
-#include "bench/list_command.hpp"
-#include "bench/number_text.hpp"
-#include "bench/plan_command.hpp"
-#include "bench/report_command.hpp"
-#include "bench/run_arguments.hpp"
-#include "bench/run_command.hpp"
-#include "bench/simulate_command.hpp"
-#include "bench/table_output.hpp"
-#include "bench/verify_command.hpp"
-#include "bench/windows_command.hpp"
+#include "bench/catalogue/number_text.hpp"
+#include "bench/console/faults.hpp"
+#include "bench/console/interrupt.hpp"
+#include "bench/console/table_output.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/verbs/check_command.hpp"
+#include "bench/verbs/compare_command.hpp"
+#include "bench/verbs/entropy_arguments.hpp"
+#include "bench/verbs/entropy_command.hpp"
+#include "bench/verbs/evaluate_command.hpp"
+#include "bench/verbs/fusion_arguments.hpp"
+#include "bench/verbs/import_command.hpp"
+#include "bench/verbs/list_command.hpp"
+#include "bench/verbs/plan_command.hpp"
+#include "bench/verbs/report_command.hpp"
+#include "bench/verbs/run_arguments.hpp"
+#include "bench/verbs/run_command.hpp"
+#include "bench/verbs/simulate_command.hpp"
+#include "bench/verbs/verify_command.hpp"
+#include "bench/verbs/windows_command.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {
@@ -237,9 +238,8 @@ void complete_verb(std::vector<std::string>& words, const std::vector<Verb>& ver
   std::vector<std::string> names;
   for (const Verb& verb : verbs) names.push_back(verb.app->get_name());
   if (std::find(names.begin(), names.end(), words[0]) != names.end()) return;
-  const std::string near = nearest_name(words[0], names);
-  throw std::invalid_argument(fmt::format("unknown verb '{}'{}; 'bench --help' lists them", words[0],
-                                          near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+  throw std::invalid_argument(
+      fmt::format("unknown verb '{}'{}; 'bench --help' lists them", words[0], did_you_mean(words[0], names)));
 }
 
 void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,

@@ -3,7 +3,7 @@
 
 namespace odobench {
 
-// Returns the exit code of bench/exit_code.hpp.
+// Returns the exit code of bench/console/exit_code.hpp.
 int bench_main(int argc, char** argv);
 
 }  // namespace odobench

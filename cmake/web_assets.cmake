@@ -1,4 +1,4 @@
-# Embeds the files of HTML reports (reports/web_assets.hpp) into a library.
+# Embeds the files of HTML reports (reports/page/web_assets.hpp) into a library.
 set(ODOBENCH_CHARTS AUTO CACHE STRING "Charts of HTML reports, fetched with npm: AUTO where possible, ON or fail, OFF")
 set_property(CACHE ODOBENCH_CHARTS PROPERTY STRINGS AUTO ON OFF)
 if(NOT ODOBENCH_CHARTS MATCHES "^(AUTO|ON|OFF)$")
@@ -32,7 +32,7 @@ add_custom_command(OUTPUT ${ODOBENCH_CHART_FILES}
 # The assembler copies the files into the object file: nothing to parse, whatever their size.
 set(embedded page.css theme.js charts.js page.js render_svg.js)
 list(TRANSFORM embedded PREPEND "${web}/")
-set_source_files_properties(reports/web_assets.cpp PROPERTIES
+set_source_files_properties(reports/page/web_assets.cpp PROPERTIES
   COMPILE_DEFINITIONS "ODOBENCH_WEB=\"${web}/\";ODOBENCH_CHART_FOLDER=\"${charts}/\""
   OBJECT_DEPENDS "${embedded};${ODOBENCH_CHART_FILES}" SKIP_PRECOMPILE_HEADERS ON)
 

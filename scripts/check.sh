@@ -3,10 +3,7 @@
 #
 # usage: scripts/check.sh [ROOT]        ROOT: the checkout to look at (default: this one)
 #
-#   includes   base/ includes nothing of ours, every other room may include base/; datasets/ and reports/ nothing else of ours;
-#              problems/ only problems/ and the plain data of datasets/recording.hpp and datasets/entropy_window.hpp;
-#              solvers/ only solvers/, problems/problem.hpp and problems/instruction_set.hpp; tests/ everything but bench/,
-#              of which it may call bench/cli.hpp, the program as a function; paths from the root
+#   includes   a room includes itself and what the table below gives it; paths from the root
 #   headers    begin with `#pragma once` (after comments)
 #   flags      no -march=native, no -ffast-math or its parts: results must not depend on the machine that built them
 #   length     no source file above 450 lines
@@ -26,28 +23,77 @@ mapfile -t build_files < <(find CMakeLists.txt CMakePresets.json cmake .ci scrip
   \( -name CMakeLists.txt -o -name '*.cmake' -o -name '*.json' -o -name run -o -name '*.sh' \) \
   -not -name check.sh -not -path 'datasets/*.json' 2>/dev/null | sort)
 
+# Who may include what: a folder or file with all below it, then what it may include besides itself. `folder` means the files that
+# lie in it, `folder/` those of its sub-folders, too. The longest name that fits a file decides; base may be included by all.
+arrows='
+base
+datasets
+datasets/csv
+datasets/entropy              datasets/csv
+datasets/native               datasets
+datasets/import               datasets datasets/csv
+reports/records
+reports/statistics            reports/records
+reports/render                reports/records
+reports/regression            reports/records reports/statistics reports/render
+reports/figures               reports/render
+reports/kinds                 reports/records reports/statistics reports/render reports/figures
+reports/kinds/fusion          reports/records reports/statistics reports/render reports/figures reports/kinds/calibration
+reports/page                  reports/
+problems
+problems/calibration          problems datasets/recording.hpp
+problems/classic              problems
+problems/entropy              problems datasets/entropy/entropy_window.hpp
+problems/kalman               problems
+problems/fusion               problems problems/kalman problems/calibration datasets/recording.hpp
+problems/information          problems problems/calibration datasets/recording.hpp
+problems/simulation           datasets/
+problems/simulation/motors    problems/simulation
+solvers                       problems/problem.hpp problems/instruction_set.hpp
+solvers/registry.cpp          solvers/
+solvers/local                 solvers problems/problem.hpp
+solvers/population            solvers problems/problem.hpp
+solvers/lattice               solvers problems/problem.hpp problems/block_quadratic.hpp problems/lattice.hpp problems/instruction_set.hpp
+solvers/libraries             solvers problems/problem.hpp
+bench/console                 solvers/run.hpp reports/render
+bench/catalogue               datasets/ problems/ solvers/
+bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue bench/console
+bench                         datasets/ problems/ solvers/ reports/ bench/
+tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies
+'
+
 check_includes() {
-  awk '
+  awk -v arrows="$arrows" '
+    BEGIN {
+      count = split(arrows, row, "\n")
+      for (i = 1; i <= count; i++) {
+        name = row[i]; sub(/ .*/, "", name)
+        if (name == "") continue
+        rest = row[i]; sub(/^[^ ]* */, "", rest)
+        allowed[name] = rest
+      }
+    }
     function bad(why) { printf "%s:%d: includes \"%s\": %s\n", FILENAME, FNR, path, why }
+    function folder_of(file) { sub(/\/[^\/]*$/, "", file); return file }
+    function place_of(file) {  # the row of the table that speaks of it
+      while (!(file in allowed) && file ~ /\//) file = folder_of(file)
+      return file
+    }
+    function may(place, target,   list, n, i) {
+      n = split(allowed[place], list, " ")
+      for (i = 1; i <= n; i++)
+        if (target == list[i] || folder_of(target) == list[i] || (list[i] ~ /\/$/ && index(target, list[i]) == 1)) return 1
+      return 0
+    }
     /^[ \t]*#[ \t]*include[ \t]*[<"]/ {
       path = $0; sub(/^[^<"]*[<"]/, "", path); sub(/[>"].*$/, "", path)
       quoted = $0 ~ /include[ \t]*"/
-      room = FILENAME; sub(/\/.*/, "", room)
-      target = path; sub(/\/.*/, "", target)
-      ours = target ~ /^(base|bench|datasets|problems|reports|solvers|tests)$/ && path ~ /\//
+      ours = path ~ /^(base|bench|datasets|problems|reports|solvers|tests)\//
       if (quoted && !ours) { bad("write the path from the repository root, or <...> for a library"); next }
       if (!quoted && ours) { bad("write our own headers in quotes"); next }
-      if (!ours || target == room) next
-      if (path == "bench/cli.hpp" && room == "tests") next
-      if (target == "bench") bad("nothing includes bench/")
-      else if (target == "tests") bad("nothing but tests/ includes tests/")
-      else if (room == "base") bad("base/ includes nothing of ours")
-      else if (target == "base") next
-      else if (room == "datasets" || room == "reports") bad(room "/ includes nothing of ours but base/")
-      else if (room == "problems" && path !~ /^datasets\/(recording|entropy_window)\.hpp$/)
-        bad("problems/ includes only base/, problems/, datasets/recording.hpp and datasets/entropy_window.hpp")
-      else if (room == "solvers" && path !~ /^problems\/(problem|instruction_set)\.hpp$/)
-        bad("solvers/ includes only base/, solvers/, problems/problem.hpp and problems/instruction_set.hpp")
+      place = place_of(FILENAME)
+      if (!ours || folder_of(path) == "base" || place_of(path) == place || may(place, path)) next
+      bad(place " includes " (allowed[place] == "" ? "nothing of ours but base" : "only base " allowed[place]))
     }' "${sources[@]}"
 }
 

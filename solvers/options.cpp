@@ -8,6 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/names.hpp"
+
 namespace odobench {
 namespace {
 
@@ -91,21 +93,6 @@ SolverSpec parse_spec(const std::string& part, std::string_view whole) {
   return spec;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
-  }
-  return row[b.size()];
-}
-
 }  // namespace
 
 std::string SolverSpec::text() const {
@@ -119,19 +106,6 @@ std::vector<SolverSpec> parse_solver_list(std::string_view text) {
   std::vector<SolverSpec> specs;
   for (const std::string& part : split_outside_brackets(text)) specs.push_back(parse_spec(part, text));
   return specs;
-}
-
-std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
-  for (const std::string& name : known) {
-    const std::size_t distance = edit_distance(word, name);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = name;
-    }
-  }
-  return best;
 }
 
 void OptionBinder::number(std::string name, double& field, std::string help, double lowest, double highest) {
@@ -240,10 +214,8 @@ void OptionBinder::apply(const std::string& solver, const OptionValues& values) 
     if (entry == entries_.end()) {
       std::vector<std::string> names;
       for (const Entry& e : entries_) names.push_back(e.name);
-      const std::string near = nearest_name(key, names);
       throw std::invalid_argument(
-          fmt::format("solver '{}': unknown option '{}'{}; known: {}", solver, key,
-                      near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+          fmt::format("solver '{}': unknown option '{}'{}; known: {}", solver, key, did_you_mean(key, names),
                       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
     }
     const std::string wrong = entry->set(text);

@@ -24,9 +24,6 @@ struct SolverSpec {
 // brackets, empty names, an option without '=' or given twice.
 std::vector<SolverSpec> parse_solver_list(std::string_view text);
 
-// The entry of `known` nearest to `word` by edit distance, "" when none is near enough to be meant.
-std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
-
 struct OptionDescription {
   std::string name;
   std::string value;    // in force (the default, before apply)

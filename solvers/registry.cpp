@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "solvers/block_solvers.hpp"
-#include "solvers/ceres_solver.hpp"
-#include "solvers/cmaes.hpp"
-#include "solvers/coordinate_search.hpp"
-#include "solvers/differential_evolution.hpp"
-#include "solvers/genetic.hpp"
-#include "solvers/interior_point.hpp"
-#include "solvers/levenberg_marquardt.hpp"
-#include "solvers/multistart.hpp"
-#include "solvers/nlopt_solvers.hpp"
-#include "solvers/particle_swarm.hpp"
+#include "base/names.hpp"
+#include "solvers/lattice/block_solvers.hpp"
+#include "solvers/lattice/coordinate_search.hpp"
+#include "solvers/libraries/ceres_solver.hpp"
+#include "solvers/libraries/interior_point.hpp"
+#include "solvers/libraries/nlopt_solvers.hpp"
+#include "solvers/local/levenberg_marquardt.hpp"
+#include "solvers/local/multistart.hpp"
+#include "solvers/population/cmaes.hpp"
+#include "solvers/population/differential_evolution.hpp"
+#include "solvers/population/genetic.hpp"
+#include "solvers/population/particle_swarm.hpp"
 
 namespace odobench {
 
@@ -46,9 +47,8 @@ const SolverEntry& find_solver(const std::string& name) {
   if (row != rows.end()) return *row;
   std::vector<std::string> names;
   for (const SolverEntry& e : rows) names.push_back(e.name);
-  const std::string near = nearest_name(name, names);
-  throw std::invalid_argument(fmt::format("unknown solver '{}'{}; 'bench list solvers' shows all", name,
-                                          near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
+  throw std::invalid_argument(
+      fmt::format("unknown solver '{}'{}; 'bench list solvers' shows all", name, did_you_mean(name, names)));
 }
 
 }  // namespace odobench

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "problems/problem.hpp"
 #include "solvers/box.hpp"
-#include "solvers/random.hpp"
 
 namespace odobench {
 

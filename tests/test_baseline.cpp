@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "reports/baseline.hpp"
+#include "reports/regression/baseline.hpp"
 #include "tests/support/report_records.hpp"
 
 namespace odobench {

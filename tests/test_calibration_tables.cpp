@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "reports/calibration_tables.hpp"
+#include "reports/kinds/calibration/calibration_tables.hpp"
 #include "tests/support/report_records.hpp"
 
 namespace odobench {

@@ -27,11 +27,12 @@ class MiniatureTree {
     fs::copy_file(source_dir() / ".clang-format", folder_ / ".clang-format");
     write("CMakeLists.txt", "project(miniature)  # never -ffast-math\n");
     write("datasets/recording.hpp", "#pragma once\n");
-    write("problems/problem.hpp", "// A comment first.\n#pragma once\n#include \"datasets/recording.hpp\"\n");
+    write("problems/problem.hpp", "// A comment first.\n#pragma once\n");
+    write("problems/calibration/model.hpp", "#pragma once\n#include \"datasets/recording.hpp\"\n");
     write("solvers/solver.hpp", "#pragma once\n#include \"problems/problem.hpp\"\n");
-    write("reports/record.hpp", "#pragma once\n#include <string>\n");
+    write("reports/records/record.hpp", "#pragma once\n#include <string>\n");
     write("bench/main.cpp",
-          "#include \"reports/record.hpp\"\n#include \"solvers/solver.hpp\"\nint main() {}\n");
+          "#include \"reports/records/record.hpp\"\n#include \"solvers/solver.hpp\"\nint main() {}\n");
   }
   void write(const std::string& path, const std::string& text) const {
     fs::create_directories((folder_ / path).parent_path());
@@ -52,26 +53,33 @@ void PrintTo(const Violation& violation, std::ostream* out) {
 
 const std::vector<Violation> kViolations = {
     {"DatasetsIncludeProblems", "datasets/reader.hpp", "#pragma once\n#include \"problems/problem.hpp\"\n",
-     "datasets/reader.hpp:2: includes \"problems/problem.hpp\": datasets/ includes nothing of ours but "
-     "base/"},
-    {"ReportsIncludeSolvers", "reports/table.hpp", "#pragma once\n#include \"solvers/solver.hpp\"\n",
-     "reports/table.hpp:2: includes \"solvers/solver.hpp\": reports/ includes nothing of ours but base/"},
+     "datasets/reader.hpp:2: includes \"problems/problem.hpp\": datasets includes nothing of ours but base"},
+    {"ReportsIncludeSolvers", "reports/render/table.hpp", "#pragma once\n#include \"solvers/solver.hpp\"\n",
+     "reports/render/table.hpp:2: includes \"solvers/solver.hpp\": reports/render includes only base "
+     "reports/records"},
+    {"TablesIncludeThePage", "reports/render/table.cpp", "#include \"reports/page/html_page.hpp\"\n",
+     "reports/render/table.cpp:1: includes \"reports/page/html_page.hpp\": reports/render includes only base "
+     "reports/records"},
     {"BaseIncludesDatasets", "base/files.cpp", "#include \"datasets/reader.hpp\"\n",
-     "base/files.cpp:1: includes \"datasets/reader.hpp\": base/ includes nothing of ours"},
-    {"ProblemsIncludeOtherDatasetHeader", "problems/model.cpp", "#include \"datasets/reader.hpp\"\n",
-     "problems/model.cpp:1: includes \"datasets/reader.hpp\": problems/ includes only base/"},
+     "base/files.cpp:1: includes \"datasets/reader.hpp\": base includes nothing of ours but base"},
+    {"ProblemsIncludeOtherDatasetHeader", "problems/calibration/model.cpp",
+     "#include \"datasets/reader.hpp\"\n",
+     "problems/calibration/model.cpp:1: includes \"datasets/reader.hpp\": problems/calibration includes only "
+     "base"},
     {"SolversIncludeConcreteProblem", "solvers/method.cpp", "#include \"problems/calibration/model.hpp\"\n",
-     "solvers/method.cpp:1: includes \"problems/calibration/model.hpp\": solvers/ includes only base/"},
-    {"SolversIncludeDatasets", "solvers/method.cpp", "#include \"datasets/recording.hpp\"\n",
-     "solvers/method.cpp:1: includes \"datasets/recording.hpp\": solvers/ includes only base/"},
-    {"TestsIncludeBench", "tests/test_cli.cpp", "#include \"bench/options.hpp\"\n",
-     "tests/test_cli.cpp:1: includes \"bench/options.hpp\": nothing includes bench/"},
+     "solvers/method.cpp:1: includes \"problems/calibration/model.hpp\": solvers includes only base"},
+    {"SolversIncludeDatasets", "solvers/local/method.cpp", "#include \"datasets/recording.hpp\"\n",
+     "solvers/local/method.cpp:1: includes \"datasets/recording.hpp\": solvers/local includes only base"},
+    {"ACatalogueIncludesAVerb", "bench/catalogue/list.cpp", "#include \"bench/verbs/run.hpp\"\n",
+     "bench/catalogue/list.cpp:1: includes \"bench/verbs/run.hpp\": bench/catalogue includes only base"},
+    {"TestsIncludeVerbs", "tests/test_cli.cpp", "#include \"bench/verbs/run.hpp\"\n",
+     "tests/test_cli.cpp:1: includes \"bench/verbs/run.hpp\": tests includes only base"},
     {"BenchIncludesTests", "bench/run.cpp", "#include \"tests/support/shared.hpp\"\n",
-     "bench/run.cpp:1: includes \"tests/support/shared.hpp\": nothing but tests/ includes tests/"},
+     "bench/run.cpp:1: includes \"tests/support/shared.hpp\": bench includes only base"},
     {"RelativePath", "solvers/method.cpp", "#include \"solver.hpp\"\n",
      "solvers/method.cpp:1: includes \"solver.hpp\": write the path from the repository root"},
-    {"AngleBrackets", "solvers/method.cpp", "#include <bench/options.hpp>\n",
-     "solvers/method.cpp:1: includes \"bench/options.hpp\": write our own headers in quotes"},
+    {"AngleBrackets", "solvers/method.cpp", "#include <bench/verbs/options.hpp>\n",
+     "solvers/method.cpp:1: includes \"bench/verbs/options.hpp\": write our own headers in quotes"},
     {"NoPragmaOnce", "solvers/method.hpp", "// A comment.\nint f();\n",
      "solvers/method.hpp:1: no #pragma once"},
     {"NativeCode", "CMakeLists.txt", "add_compile_options(-O3\n  -march=native)\n",

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/dataset.hpp"
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/source_dir.hpp"

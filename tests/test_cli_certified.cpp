@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/run_process.hpp"
 

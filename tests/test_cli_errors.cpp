@@ -6,7 +6,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <thread>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/entropy_windows.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"

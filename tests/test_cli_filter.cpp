@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/filter_run_files.hpp"
 #include "tests/support/refusal.hpp"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/example_runs.hpp"
 #include "tests/support/formats.hpp"
 #include "tests/support/refusal.hpp"

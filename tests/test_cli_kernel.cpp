@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/run_process.hpp"
 

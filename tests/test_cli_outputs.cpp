@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/example_runs.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/source_dir.hpp"

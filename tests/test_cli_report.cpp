@@ -11,9 +11,9 @@
 #include <regex>
 #include <sstream>
 
-#include "reports/record.hpp"
-#include "reports/tracks.hpp"
-#include "reports/web_assets.hpp"
+#include "reports/page/web_assets.hpp"
+#include "reports/records/record.hpp"
+#include "reports/records/tracks.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"

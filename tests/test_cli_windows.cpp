@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/entropy_windows.hpp"
 #include "tests/support/refusal.hpp"

@@ -1,4 +1,4 @@
-#include "datasets/csv_dialect.hpp"
+#include "datasets/csv/csv_dialect.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,8 +6,8 @@
 
 #include <map>
 
-#include "datasets/csv_stream.hpp"
-#include "datasets/csv_table.hpp"
+#include "datasets/csv/csv_stream.hpp"
+#include "datasets/csv/csv_table.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.hpp"
-#include "datasets/columns.hpp"
+#include "datasets/native/columns.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"

@@ -1,6 +1,6 @@
 // The synthetic set that is part of the repository: reproducible, honest about its truth, and good enough to
 // find it.
-#include "datasets/demo_generator.hpp"
+#include "problems/simulation/demo_generator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "base/files.hpp"
-#include "datasets/columns.hpp"
+#include "datasets/native/columns.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"

@@ -7,10 +7,10 @@
 #include <cstdlib>
 
 #include "base/parallel.hpp"
-#include "datasets/simulate/scenario_file.hpp"
-#include "datasets/simulate/simulated_set.hpp"
-#include "problems/calibration/drive_planning.hpp"
-#include "reports/statistics.hpp"
+#include "problems/information/drive_planning.hpp"
+#include "problems/simulation/scenario_file.hpp"
+#include "problems/simulation/simulated_set.hpp"
+#include "reports/statistics/statistics.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/source_dir.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/dynamics/drive.hpp"
-#include "problems/dynamics/sensors.hpp"
+#include "problems/simulation/motors/drive.hpp"
+#include "problems/simulation/motors/sensors.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "reports/filter_tables.hpp"
-#include "reports/window_tables.hpp"
+#include "reports/kinds/entropy/entropy_tables.hpp"
+#include "reports/kinds/entropy/window_tables.hpp"
 
 namespace odobench {
 namespace {

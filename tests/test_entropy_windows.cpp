@@ -7,8 +7,8 @@
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/window_problem.hpp"
 #include "problems/instruction_set.hpp"
+#include "solvers/lattice/ternary_search.hpp"
 #include "solvers/solve.hpp"
-#include "solvers/ternary_search.hpp"
 #include "tests/support/entropy_windows.hpp"
 
 namespace odobench {

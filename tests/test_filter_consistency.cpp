@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "problems/fusion/consistency.hpp"
 #include "problems/fusion/robot_model.hpp"
+#include "problems/kalman/consistency.hpp"
 #include "tests/support/normal.hpp"
 
 namespace odobench {

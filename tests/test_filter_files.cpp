@@ -5,9 +5,9 @@
 #include <numbers>
 #include <thread>
 
-#include "datasets/entropy_window_file.hpp"
-#include "datasets/filter_run.hpp"
-#include "datasets/filter_truth.hpp"
+#include "datasets/entropy/entropy_window_file.hpp"
+#include "datasets/entropy/filter_run.hpp"
+#include "datasets/entropy/filter_truth.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/filter_run_files.hpp"
 #include "tests/support/run_process.hpp"
@@ -177,14 +177,9 @@ TEST(FilterRun, MappedColumnsWin) {
   EXPECT_NEAR(rows[0].rotation_deg, 0.2 * kDegrees, 1e-12);
 }
 
-std::string nearest_enc(std::string_view, const std::vector<std::string>& known) {
-  return known.empty() ? "" : known.front();
-}
-
 TEST(FilterRun, Refuses) {
   FilterRunOptions options;
   options.least_rows = 10;
-  options.nearest = nearest_enc;
   const std::string run = plain_run(12);
   const auto error = [&](const std::string& from, const std::string& to) {
     return data_error([&] { read_run(replaced(run, from, to), options); });
@@ -262,7 +257,7 @@ TEST(FilterTruth, UnitsInTheNamesOrNot) {
 TEST(FilterTruth, Refuses) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& header) {
-    return data_error([&] { FilterTruthReader(folder.file("t.csv", header + "\n"), {}, nullptr); });
+    return data_error([&] { FilterTruthReader(folder.file("t.csv", header + "\n"), {}); });
   };
   EXPECT_TRUE(says(error("sx,sy,dtheta_deg,ax"), {"t.csv:1: found no column \"ay_m_s2\""}));
   EXPECT_TRUE(says(error("sx,sy,dtheta,ax,ay"), {"found no column \"dtheta_deg\""}));

@@ -7,11 +7,11 @@
 #include <limits>
 #include <regex>
 
-#include "reports/document.hpp"
-#include "reports/html_figure.hpp"
-#include "reports/html_table.hpp"
-#include "reports/html_text.hpp"
-#include "reports/web_assets.hpp"
+#include "reports/figures/document.hpp"
+#include "reports/page/html_figure.hpp"
+#include "reports/page/html_table.hpp"
+#include "reports/page/html_text.hpp"
+#include "reports/page/web_assets.hpp"
 #include "tests/support/sample_document.hpp"
 
 namespace odobench {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "problems/fusion/consistency.hpp"
-#include "problems/fusion/linear_model.hpp"
 #include "problems/fusion/robot_model.hpp"
+#include "problems/kalman/consistency.hpp"
+#include "problems/kalman/linear_model.hpp"
 #include "tests/support/normal.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"

@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "problems/fusion/covariance.hpp"
-#include "problems/fusion/linear_system.hpp"
-#include "problems/fusion/triangular.hpp"
+#include "problems/kalman/covariance.hpp"
+#include "problems/kalman/linear_system.hpp"
+#include "problems/kalman/triangular.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -1,4 +1,4 @@
-#include "solvers/multistart.hpp"
+#include "solvers/local/multistart.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

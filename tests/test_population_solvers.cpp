@@ -6,9 +6,9 @@
 
 #include "problems/classic/classic_problems.hpp"
 #include "solvers/boundary_map.hpp"
-#include "solvers/coordinate_search.hpp"
-#include "solvers/genetic_thesis.hpp"
-#include "solvers/greedy_scan.hpp"
+#include "solvers/lattice/coordinate_search.hpp"
+#include "solvers/lattice/greedy_scan.hpp"
+#include "solvers/population/genetic_thesis.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/valley_problem.hpp"
 #include "tests/support/vitko_problem.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "reports/rank_test.hpp"
+#include "reports/statistics/mann_whitney.hpp"
 
 namespace odobench {
 namespace {

@@ -9,14 +9,14 @@
 #include <set>
 #include <sstream>
 
-#include "reports/decimate.hpp"
-#include "reports/filter_figures.hpp"
-#include "reports/filter_tables.hpp"
-#include "reports/fusion_record.hpp"
-#include "reports/report_document.hpp"
-#include "reports/run_figures.hpp"
-#include "reports/track_figures.hpp"
-#include "reports/tracks.hpp"
+#include "reports/figures/decimate.hpp"
+#include "reports/kinds/calibration/run_figures.hpp"
+#include "reports/kinds/calibration/track_figures.hpp"
+#include "reports/kinds/entropy/entropy_figures.hpp"
+#include "reports/kinds/entropy/entropy_tables.hpp"
+#include "reports/kinds/fusion/fusion_record.hpp"
+#include "reports/page/report_document.hpp"
+#include "reports/records/tracks.hpp"
 #include "tests/support/report_records.hpp"
 
 namespace odobench {

@@ -4,9 +4,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "reports/cell_text.hpp"
-#include "reports/table.hpp"
-#include "reports/text_width.hpp"
+#include "reports/render/cell_text.hpp"
+#include "reports/render/table.hpp"
+#include "reports/render/text_width.hpp"
 
 namespace odobench {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "reports/statistics.hpp"
+#include "reports/statistics/statistics.hpp"
 #include "tests/support/report_records.hpp"
 
 namespace odobench {

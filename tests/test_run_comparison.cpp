@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reports/run_comparison.hpp"
+#include "reports/regression/changes.hpp"
 #include "tests/support/report_records.hpp"
 
 namespace odobench {

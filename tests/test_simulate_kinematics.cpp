@@ -6,8 +6,8 @@
 
 #include "base/angle.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/calibration_problem.hpp"
+#include "problems/simulation/simulated_set.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/vitko_problem.hpp"
 

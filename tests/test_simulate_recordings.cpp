@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "datasets/robot_4wis4wid.hpp"
-#include "datasets/simulate/scenario_file.hpp"
-#include "datasets/simulate/simulated_set.hpp"
 #include "problems/calibration/calibration_problem.hpp"
-#include "reports/statistics.hpp"
+#include "problems/simulation/scenario_file.hpp"
+#include "problems/simulation/simulated_set.hpp"
+#include "reports/statistics/statistics.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/source_dir.hpp"

@@ -4,7 +4,7 @@
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/sliding_filter.hpp"
 #include "problems/entropy/window_problem.hpp"
-#include "solvers/ternary_search.hpp"
+#include "solvers/lattice/ternary_search.hpp"
 #include "tests/support/entropy_windows.hpp"
 
 namespace odobench {

@@ -9,7 +9,7 @@
 
 #include "problems/classic/classic_problems.hpp"
 #include "solvers/box_quadratic.hpp"
-#include "solvers/levenberg_marquardt.hpp"
+#include "solvers/local/levenberg_marquardt.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
 

@@ -1,11 +1,11 @@
-#include "datasets/synchronise.hpp"
+#include "datasets/import/vitko2024/synchronise.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "datasets/vitko2024_csv.hpp"
+#include "datasets/import/vitko2024/vitko2024_csv.hpp"
 
 namespace odobench {
 namespace {

@@ -6,10 +6,10 @@
 #include <set>
 #include <thread>
 
-#include "datasets/vitko2024.hpp"
+#include "datasets/import/vitko2024/vitko2024.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/classic/classic_problems.hpp"
-#include "solvers/ceres_solver.hpp"
+#include "solvers/libraries/ceres_solver.hpp"
 #include "solvers/optimality.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"

@@ -16,11 +16,11 @@
 #include <numbers>
 #include <random>
 
-#include "datasets/entropy_window_file.hpp"
+#include "datasets/entropy/entropy_window_file.hpp"
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/sliding_filter.hpp"
 #include "problems/entropy/window_problem.hpp"
-#include "solvers/ternary_search.hpp"
+#include "solvers/lattice/ternary_search.hpp"
 
 namespace odobench {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "datasets/entropy_window.hpp"
+#include "datasets/entropy/entropy_window.hpp"
 
 namespace odobench {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "problems/calibration/calibration_problem.hpp"
-#include "problems/fusion/kalman_filter.hpp"
+#include "problems/kalman/kalman_filter.hpp"
 
 namespace odobench {
 

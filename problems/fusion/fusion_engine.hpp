@@ -5,9 +5,9 @@
 #include <array>
 #include <limits>
 
-#include "problems/fusion/consistency.hpp"
 #include "problems/fusion/fusion.hpp"
 #include "problems/fusion/robot_model.hpp"
+#include "problems/kalman/consistency.hpp"
 
 namespace odobench {
 

@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "datasets/recording.hpp"
-#include "problems/fusion/kalman_filter.hpp"
+#include "problems/kalman/kalman_filter.hpp"
 
 namespace odobench {
 

@@ -3,25 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <stdexcept>
 
+#include "base/random.hpp"
+
 namespace odobench {
 namespace {
-
-class Noise {
- public:
-  explicit Noise(std::uint64_t seed) : engine_(seed) {}
-  double normal(double sigma) { return sigma * normal_(engine_); }
-  double uniform() { return boost::random::uniform_01<double>()(engine_); }
-
- private:
-  boost::random::mt19937_64 engine_;
-  boost::random::normal_distribution<double> normal_;
-};
 
 // Pose and yaw rate of the reference at any instant, by the local line.
 class Truth {
@@ -80,7 +68,7 @@ void check(const StreamTiming& t) {
 // of the stream; lost ones are made and dropped, so that the others do not
 // depend on `missing`.
 template <class Sample>
-std::vector<Measurement> stream(const Recording& recording, const StreamTiming& timing, Noise& noise,
+std::vector<Measurement> stream(const Recording& recording, const StreamTiming& timing, Random& noise,
                                 Sample sample) {
   const Truth truth(recording, timing.smooth_s);
   const double phase = noise.uniform();
@@ -109,7 +97,7 @@ std::vector<Measurement> synthetic_camera(const Recording& recording, const Came
         std::pair("heading_noise", errors.heading_noise)})
     require(value >= 0, name, value, "a finite number >= 0");
   require(std::abs(errors.scale_mean) < 1, "scale_mean", errors.scale_mean, "between -1 and 1");
-  Noise noise(seed);
+  Random noise(seed);
   const double scale = 1 + errors.scale_mean + noise.normal(errors.scale);
   const Truth start(recording, timing.smooth_s);
   Eigen::Vector3d last = start.at(static_cast<double>(recording.time_us.front()) * 1e-6).pose;
@@ -136,7 +124,7 @@ std::vector<Measurement> synthetic_gyro(const Recording& recording, const GyroEr
   for (const auto& [name, value] : {std::pair("bias", errors.bias), std::pair("bias_walk", errors.bias_walk),
                                     std::pair("noise", errors.noise)})
     require(value >= 0, name, value, "a finite number >= 0");
-  Noise noise(seed);
+  Random noise(seed);
   double bias = noise.normal(errors.bias);
   return stream(recording, timing, noise, [&](double dt, const Truth::Sample& truth) {
     bias += noise.normal(errors.bias_walk * std::sqrt(dt));

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "reports/web_assets.hpp"
+#include "reports/page/web_assets.hpp"
 #include "tests/support/sample_document.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "datasets/entropy_window_file.hpp"
+#include "datasets/entropy/entropy_window_file.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace odobench::testing {

@@ -9,7 +9,7 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "datasets/dataset.hpp"
-#include "datasets/recording_file.hpp"
+#include "datasets/native/recording_file.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "tests/support/entropy_windows.hpp"
 #include "tests/support/filter_run_files.hpp"

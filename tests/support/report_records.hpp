@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/record.hpp"
+#include "reports/records/record.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace odobench::testing {

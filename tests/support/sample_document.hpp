@@ -1,7 +1,7 @@
 // A report with every kind of table and chart there is, with made-up data.
 #pragma once
 
-#include "reports/document.hpp"
+#include "reports/figures/document.hpp"
 
 namespace odobench::testing {
 

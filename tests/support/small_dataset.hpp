@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/sha256.hpp"
-#include "datasets/columns.hpp"
 #include "datasets/dataset.hpp"
+#include "datasets/native/columns.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::testing {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "datasets/vitko2024.hpp"
+#include "datasets/import/vitko2024/vitko2024.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "tests/support/shared_data.hpp"
 

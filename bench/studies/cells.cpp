@@ -1,0 +1,180 @@
+#include "bench/studies/cells.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+#include "bench/studies/context.hpp"
+#include "solvers/registry.hpp"
+
+namespace odobench {
+namespace {
+
+// Hands out the cells in order and keeps the first exception.
+class Dispatcher {
+ public:
+  Dispatcher(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+             const std::atomic<bool>& interrupt, CellWatcher& watcher)
+      : problems_(problems),
+        cells_(cells),
+        budget_(budget),
+        threads_(threads),
+        interrupt_(interrupt),
+        watcher_(watcher) {}
+
+  void work() {
+    while (!stop_.load() && !interrupt_.load()) {
+      const std::size_t cell = next_.fetch_add(1);
+      if (cell >= cells_.size()) return;
+      try {
+        run(cell);
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        stop_.store(true);
+      }
+    }
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void run(std::size_t index) {
+    const RunCell cell = cells_[index];
+    watcher_.started(index);
+    SolveOptions options;
+    options.budget = budget_;
+    options.seed = cell.seed;
+    options.interrupt = &interrupt_;
+    options.threads = threads_;
+    options.polish = cell.polish;
+    options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
+    const Problem own = problems_[cell.problem];  // a copy has evaluation counts of its own
+    const Vector start = cell.random_start ? random_start(own, cell.start_seed) : own.start();
+    const std::string begin = utc_now();
+    const Result result = solve(own, cell.solver, start, options);
+    if (result.termination == Termination::Interrupted && !result.usable()) return;  // as good as not begun
+    watcher_.finished(index, result, begin);
+  }
+
+  const std::vector<Problem>& problems_;
+  const CellList& cells_;
+  const Budget& budget_;
+  const int threads_;
+  const std::atomic<bool>& interrupt_;
+  CellWatcher& watcher_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+std::string RunCell::label() const {
+  return polish.name.empty() ? solver.text() : solver.text() + "+" + polish.text();
+}
+
+bool RunCell::draws_random_numbers() const {
+  return find_solver(solver.name).stochastic || (!polish.name.empty() && find_solver(polish.name).stochastic);
+}
+
+std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
+                                        std::vector<std::string>& notes) {
+  std::vector<SolverSpec> specs;
+  std::set<std::string> seen;
+  const auto take = [&](const SolverSpec& spec) {
+    find_solver(spec.name).make(spec.options, nullptr);  // throws on an unknown name or a bad option
+    if (seen.insert(spec.text()).second)
+      specs.push_back(spec);
+    else
+      notes.push_back(fmt::format("solver '{}' is listed more than once and runs once", spec.text()));
+  };
+  for (const std::string& list : lists)
+    for (const SolverSpec& spec : parse_solver_list(list)) {
+      if (spec.name == "all" && spec.options.empty())
+        for (const SolverEntry& entry : solver_registry()) take({entry.name, {}});
+      else
+        take(spec);
+    }
+  return specs;
+}
+
+void CellList::add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes) {
+  std::string once;
+  for (std::size_t k = 0; k < plan.solvers.size(); ++k) {
+    const SolverSpec& solver = plan.solvers[k];
+    const bool same_each_time = !find_solver(solver.name).stochastic && !plan.random_start;
+    if (same_each_time && plan.repeat > 1) once += (once.empty() ? "" : ", ") + solver.text();
+    groups_.push_back({size_, k, plans_.size()});
+    size_ += same_each_time ? 1 : static_cast<std::size_t>(plan.repeat);
+  }
+  plans_.push_back(plan);
+  problems_.push_back(problem);
+  if (size_ > kMostRuns)
+    throw std::invalid_argument(fmt::format(
+        "--repeat={}: together more than {} runs; expected fewer repetitions, solvers or problems, "
+        "or several calls, each with its --seed",
+        plan.repeat, kMostRuns));
+  if (!once.empty())
+    notes.push_back(fmt::format("{}: deterministic, so run once from the nominal start instead of {} times",
+                                once, plan.repeat));
+}
+
+RunCell CellList::operator[](std::size_t index) const {
+  const auto after = std::upper_bound(groups_.begin(), groups_.end(), index,
+                                      [](std::size_t i, const Group& group) { return i < group.begin; });
+  const Group& group = *std::prev(after);
+  const CellPlan& plan = plans_[group.plan];
+  RunCell cell;
+  cell.solver = plan.solvers[group.solver];
+  if (cell.solver.name != plan.polish.name) cell.polish = plan.polish;
+  cell.problem = problems_[group.plan];
+  cell.repetition = static_cast<int>(index - group.begin) + 1;
+  const std::string number = std::to_string(cell.repetition);
+  cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, cell.solver.text(), number});
+  cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
+  cell.random_start = plan.random_start;
+  return cell;
+}
+
+void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+               const std::atomic<bool>& interrupt, CellWatcher& watcher) {
+  Dispatcher dispatcher(problems, cells, budget, threads, interrupt, watcher);
+  if (threads <= 1) {
+    dispatcher.work();
+  } else {
+    // The library's own limit is one thread per core; asking for more must give more.
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                              static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    Meeting meeting;
+    meeting.arrive();
+    arena.execute([&] {
+      const auto work = [&] {
+        meeting.arrive();
+        dispatcher.work();
+        meeting.arrive();
+      };
+      tbb::task_group workers;
+      for (int i = 1; i < threads; ++i) workers.run(work);
+      work();
+      workers.wait();
+    });
+    meeting.arrive();
+  }
+  dispatcher.rethrow();
+}
+
+}  // namespace odobench

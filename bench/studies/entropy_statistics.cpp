@@ -1,0 +1,136 @@
+#include "bench/studies/entropy_statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace odobench {
+
+void Average::add(double value) {
+  min_ = count_ == 0 ? value : std::min(min_, value);
+  max_ = count_ == 0 ? value : std::max(max_, value);
+  ++count_;
+  // Compensated: a run may have millions of windows.
+  const double y = value - compensation_, t = sum_ + y;
+  compensation_ = (t - sum_) - y;
+  sum_ = t;
+}
+
+double Average::mean() const {
+  return sum_ / static_cast<double>(count_);
+}
+
+void NoiseMeter::Errors::add(double error) {
+  square.add(error * error);
+  magnitude.add(std::abs(error));
+}
+
+// Half of the rotation before the step and half after it: second order in the step.
+void NoiseMeter::Pose::step(double sx, double sy, double rotation) {
+  const double middle = heading + rotation / 2;
+  x += sx * std::cos(middle) - sy * std::sin(middle);
+  y += sx * std::sin(middle) + sy * std::cos(middle);
+  heading += rotation;
+}
+
+void NoiseMeter::Track::compare(const Pose& truth) {
+  end = std::hypot(pose.x - truth.x, pose.y - truth.y);
+  max = std::max(max, end);
+}
+
+NoiseMeter::NoiseMeter(const FilterSetup& setup)
+    : radians_(setup.rotation_sign * std::numbers::pi / 180), predictor_(setup.constants) {}
+
+void NoiseMeter::add_channel(std::size_t channel, double truth, std::array<double, 3> values) {
+  truth_[channel].add(std::abs(truth));
+  for (std::size_t stage = 0; stage < 3; ++stage) errors_[channel][stage].add(values[stage] - truth);
+}
+
+void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const TrueSample& next,
+                     const FilterOutput& output) {
+  const EntropyState& zero = output.zero.state;
+  const EntropyPrediction control = predictor_.predict(zero.sx1, zero.sy1, zero.r1);
+  double raw_x = 0, raw_y = 0;
+  for (std::size_t w = 0; w < 4; ++w) {
+    add_channel(0, truth.x[w], {row.x[w], output.first.x[w], control.x[w]});
+    add_channel(0, truth.y[w], {row.y[w], output.first.y[w], control.y[w]});
+    add_channel(1, std::hypot(truth.x[w], truth.y[w]),
+                {std::abs(row.sample.wheel[w]), std::hypot(output.first.x[w], output.first.y[w]),
+                 std::hypot(control.x[w], control.y[w])});
+    raw_x += row.x[w] / 4;
+    raw_y += row.y[w] / 4;
+  }
+  // The sample is taken at the row, ax12 lies between it and the next: the error of each is against its own truth.
+  const double mean_x = (truth.ax + next.ax) / 2, mean_y = (truth.ay + next.ay) / 2;
+  add_channel(2, truth.ax,
+              {row.sample.ax, output.state.ax12 - mean_x + truth.ax, zero.ax12 - mean_x + truth.ax});
+  add_channel(3, truth.ay,
+              {row.sample.ay, output.state.ay12 - mean_y + truth.ay, zero.ay12 - mean_y + truth.ay});
+  add_channel(4, truth.rotation, {row.sample.rotation, output.first.rotation, control.rotation});
+
+  true_pose_.step(truth.sx, truth.sy, radians_ * truth.rotation);
+  tracks_[0].pose.step(raw_x, raw_y, radians_ * row.sample.rotation);
+  tracks_[1].pose.step(output.state.sx1, output.state.sy1, radians_ * output.first.rotation);
+  tracks_[2].pose.step(zero.sx1, zero.sy1, radians_ * control.rotation);
+  for (Track& track : tracks_) track.compare(true_pose_);
+}
+
+void NoiseMeter::report(std::map<std::string, double>& statistics) const {
+  for (std::size_t c = 0; c < kNoiseChannels.size(); ++c)
+    for (std::size_t stage = 0; stage < 3; ++stage) {
+      const Errors& errors = errors_[c][stage];
+      const auto put = [&](const char* measure, double value) {
+        statistics[fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, kNoiseStages[stage])] = value;
+      };
+      put("rms", std::sqrt(errors.square.mean()));
+      if (truth_[c].mean() > 0) put("ratio", errors.magnitude.mean() / truth_[c].mean());
+      put("max", errors.magnitude.max());
+    }
+  for (std::size_t stage = 0; stage < 3; ++stage) {
+    statistics[fmt::format("track.end.{}", kNoiseStages[stage])] = tracks_[stage].end;
+    statistics[fmt::format("track.max.{}", kNoiseStages[stage])] = tracks_[stage].max;
+  }
+}
+
+void MethodMeter::add(const FilterOutput& output, std::optional<double> exact,
+                      std::optional<double> relaxed) {
+  iterations_.add(output.search.iterations);
+  evaluations_.add(static_cast<double>(output.search.evaluations));
+  iterations_sum_ += output.search.iterations;
+  evaluations_sum_ += output.search.evaluations;
+  hamiltonian_.add(output.hamiltonian);
+  gain_.add(output.hamiltonian - output.zero.h0);
+  if (exact) {
+    const double gap = *exact - output.hamiltonian;
+    gap_exact_.add(gap);
+    histogram_.add(gap, *exact);
+    at_optimum_ += gap <= kSameOptimum * std::abs(*exact) ? 1 : 0;
+  }
+  if (relaxed) gap_relaxed_.add(*relaxed - output.hamiltonian);
+}
+
+void MethodMeter::report(std::map<std::string, double>& statistics) const {
+  if (windows() == 0) return;
+  statistics["windows"] = static_cast<double>(windows());
+  statistics["iterations_mean"] = iterations_.mean();
+  statistics["iterations_max"] = iterations_.max();
+  statistics["evaluations_mean"] = evaluations_.mean();
+  statistics["hamiltonian_mean"] = hamiltonian_.mean();
+  statistics["hamiltonian_min"] = hamiltonian_.min();
+  statistics["hamiltonian_max"] = hamiltonian_.max();
+  statistics["gain_mean"] = gain_.mean();
+  statistics["gain_max"] = gain_.max();
+  if (gap_exact_.count() > 0) {
+    statistics["gap_exact_mean"] = gap_exact_.mean();
+    statistics["gap_exact_max"] = gap_exact_.max();
+    statistics["at_optimum"] = static_cast<double>(at_optimum_) / static_cast<double>(gap_exact_.count());
+  }
+  if (gap_relaxed_.count() > 0) {
+    statistics["gap_relaxed_mean"] = gap_relaxed_.mean();
+    statistics["gap_relaxed_max"] = gap_relaxed_.max();
+  }
+}
+
+}  // namespace odobench

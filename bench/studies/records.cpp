@@ -1,0 +1,219 @@
+#include "bench/studies/records.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "base/files.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/console/table_output.hpp"
+#include "bench/studies/context.hpp"
+#include "problems/classic/classic_problems.hpp"
+#include "problems/information/identifiability.hpp"
+
+namespace odobench {
+namespace {
+
+// Parameters this close to a bound, in units of the width of their box, count as on it: methods that step over bounds land
+// on them, others only come near.
+constexpr double kAtBound = 1e-6;
+
+std::vector<ParameterValue> parameter_values(const std::vector<ParameterInfo>& parameters, const Vector& x) {
+  std::vector<ParameterValue> values;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterInfo& p = parameters[i];
+    const double value = x[static_cast<Eigen::Index>(i)];
+    const double near = kAtBound * (p.upper - p.lower);
+    const char* at = p.lower == p.upper        ? ""
+                     : value <= p.lower + near ? "lower"
+                     : value >= p.upper - near ? "upper"
+                                               : "";
+    values.push_back({p.name, p.unit, value, p.nominal, p.lower, p.upper, at});
+  }
+  return values;
+}
+
+void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
+  record.parameters = parameter_values(loaded.problem.parameters(), x);
+  if (!loaded.calibration) return;
+  for (const MaxErrors& e : loaded.calibration->max_errors(x))
+    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+}
+
+std::map<std::string, double> budget_figures(const Budget& budget) {
+  std::map<std::string, double> figures{{"max_evaluations", static_cast<double>(budget.max_evaluations)},
+                                        {"max_seconds", budget.max_seconds}};
+  if (std::isfinite(budget.target_cost)) figures["target"] = budget.target_cost;
+  return figures;
+}
+
+// Every optimum that a method of many starts has seen: series optima.cost, optima.runs and optima.parameters (row by row), and
+// a note.
+void describe_optima(const std::vector<LocalOptimum>& optima, RunRecord& record) {
+  if (optima.empty()) return;
+  constexpr std::size_t kNamed = 10;
+  int runs = 0;
+  for (const LocalOptimum& o : optima) runs += o.runs;
+  std::string list;
+  for (std::size_t k = 0; k < optima.size(); ++k) {
+    const LocalOptimum& o = optima[k];
+    record.series["optima.cost"].push_back(o.cost);
+    record.series["optima.runs"].push_back(o.runs);
+    for (const double value : o.x) record.series["optima.parameters"].push_back(value);
+    if (k < kNamed)
+      list += fmt::format("{}{:.10g} ({} of {} searches, {:.0f} %)", list.empty() ? "" : ", ", o.cost, o.runs,
+                          runs, 100.0 * o.runs / runs);
+  }
+  if (optima.size() > kNamed) list += fmt::format(" and {} more", optima.size() - kNamed);
+  record.notes.push_back(fmt::format(
+      "{}: distinct optima by J and the share of the searches that ended there: {}.", record.label, list));
+}
+
+// Where the best cost is known: how near the result came, and a second opinion on its optimality.
+std::optional<KnownAnswer> known_answer(const Problem& problem, const Result& result) {
+  if (!problem.known_optimum() || !result.usable()) return std::nullopt;
+  KnownAnswer known;
+  known.cost = *problem.known_optimum();
+  if (!problem.known_minimisers().empty())
+    known.digits = log_relative_error(result.x, problem.known_minimisers());
+  known.solved = reaches_known_optimum(problem, result.x, result.cost);
+  if (result.termination == Termination::Converged) known.promise = promise_by_differences(problem, result.x);
+  return known;
+}
+
+RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
+  RunRecord record;
+  record.problem = loaded.name();
+  record.box = box_check_sum(loaded.problem.parameters());
+  record.dataset = loaded.dataset_name();
+  record.dataset_sha256 = loaded.dataset_sha256;
+  record.context = context;
+  record.time_utc = time_utc;
+  return record;
+}
+
+}  // namespace
+
+RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
+                     const Budget& budget, const Result& result, const RunContext& context,
+                     const std::string& time_utc) {
+  RunRecord record = empty_record(loaded, context, time_utc);
+  record.label = cell.label();
+  record.kind = result.termination == Termination::NotApplicable ? "skipped" : "run";
+  record.solver = cell.solver.name;
+  record.options = result.options;
+  record.polish = cell.polish.name.empty() ? "" : cell.polish.text();
+  record.seed = cell.seed;
+  record.base_seed = base_seed;
+  record.repetition = cell.repetition;
+  record.start = cell.random_start ? "random" : "nominal";
+  record.random = cell.draws_random_numbers();
+  record.budget = budget_figures(budget);
+  record.termination = to_string(result.termination);
+  record.message = result.message;
+  if (result.check)
+    record.check = {result.check->test, result.check->value, result.check->limit, result.check->evaluations};
+  record.known = known_answer(loaded.problem, result);
+  if (result.usable()) {
+    record.cost = result.cost;
+    describe_point(loaded, result.x, record);
+    if (loaded.calibration) {
+      const std::string what = fmt::format("{}, at the result of {}", record.dataset, record.label);
+      const Identifiability id = identifiability(loaded.problem, result.x);
+      if (!id.parameters.empty()) record.series = identifiability_series(id);
+      const std::string note = identifiability_note(loaded.problem, id, what);
+      if (!note.empty()) record.notes.push_back(note);
+    }
+  }
+  describe_optima(result.optima, record);
+  record.cost_before_polish = result.cost_before_polish;
+  record.evaluations = result.counts.total();
+  record.cost_evaluations = result.counts.cost;
+  record.derivative_evaluations = result.counts.total() - result.counts.cost;
+  record.non_finite = result.non_finite;
+  record.iterations = result.iterations;
+  record.seconds = result.seconds;
+  for (const TraceEntry& t : result.trace) record.trace.push_back({t.evaluations, t.seconds, t.cost});
+  return record;
+}
+
+std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records) {
+  std::map<std::pair<std::string, std::string>, const RunRecord*> best;
+  for (const RunRecord& r : records) {
+    if (r.kind != "run" || !r.cost) continue;
+    const RunRecord*& lowest = best[{r.problem, r.dataset}];
+    if (lowest == nullptr || *r.cost < *lowest->cost) lowest = &r;
+  }
+  std::vector<std::string> notes;
+  for (const auto& [group, record] : best)
+    notes.insert(notes.end(), record->notes.begin(), record->notes.end());
+  return notes;
+}
+
+RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
+                            const RunContext& context) {
+  RunRecord record = empty_record(loaded, context, utc_now());
+  record.label = label;
+  record.kind = "evaluation";
+  record.termination = "evaluated";
+  record.message = "cost and errors of given parameters";
+  const Problem own = loaded.problem;
+  record.cost = own.cost(parameters);
+  record.evaluations = record.cost_evaluations = own.counts().total();
+  describe_point(loaded, parameters, record);
+  return record;
+}
+
+namespace {
+
+// What belongs to the records of a folder, runs.jsonl first.
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files = table_files(folder);
+  files.insert(files.begin(), folder / "runs.jsonl");
+  files.push_back(folder / "tracks" / "tracks.json");
+  return files;
+}
+
+}  // namespace
+
+void require_no_records(const std::filesystem::path& folder, bool overwrite, const char* option) {
+  require_own_folder(folder / "tracks");
+  for (const std::filesystem::path& file : result_files(folder)) {
+    require_replaceable(file);
+    std::error_code error;
+    if (!overwrite && std::filesystem::exists(file, error))
+      throw std::invalid_argument(
+          fmt::format("{}={}: it holds {} already; choose another folder or give --overwrite", option,
+                      shown_path(folder), file.lexically_relative(folder).string()));
+  }
+}
+
+RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite, const char* option) {
+  try {
+    file_ = std::make_unique<LineFile>(folder / "runs.jsonl", existing_files(overwrite));
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("{}={}: {}", option, shown_path(folder), e.what()));
+  }
+  if (!overwrite) return;
+  // What was made of the records that are gone would tell of them until the new ones are complete.
+  for (const std::filesystem::path& file : result_files(folder)) {
+    std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
+    if (file != file_->path()) std::filesystem::remove(file, error);
+  }
+}
+
+void RecordFile::append(const RunRecord& record) {
+  file_->append(to_json_line(record));
+}
+
+void RecordFile::replace(const std::vector<RunRecord>& records) {
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  file_->replace(text);
+}
+
+}  // namespace odobench

@@ -1,0 +1,49 @@
+// Results -> run records, and the file that keeps them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/files.hpp"
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/cells.hpp"
+#include "reports/records/record.hpp"
+
+namespace odobench {
+
+// Parameters count as on a bound within 1e-6 of the width of their box.
+RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
+                     const Budget& budget, const Result& result, const RunContext& context,
+                     const std::string& time_utc);
+
+// The notes of the lowest run of each problem and data set, for the tables.
+std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
+
+// J and error tables of given parameters (n, parameter units). Of a calibration or of any other problem.
+RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
+                            const RunContext& context);
+
+// Throws std::invalid_argument when the folder holds runs, their tables or tracks already and they may not be replaced, or something
+// in their place that is no regular file: before long work.
+void require_no_records(const std::filesystem::path& folder, bool overwrite, const char* option = "--out");
+
+// DIR/runs.jsonl (LineFile): a process that is killed leaves every record it completed, and no other process
+// writes to the folder as long as the object lives.
+class RecordFile {
+ public:
+  // Creates the folder and the file; tables and tracks of earlier records are removed. Throws std::invalid_argument when that is
+  // not possible, or when the file exists and `overwrite` is not set.
+  RecordFile(const std::filesystem::path& folder, bool overwrite, const char* option = "--out");
+
+  // Throws DataError when the disc is full or the like; a part of a line is taken back then.
+  void append(const RunRecord& record);
+  // Puts these in the place of all so far.
+  void replace(const std::vector<RunRecord>& records);
+
+ private:
+  std::unique_ptr<LineFile> file_;
+};
+
+}  // namespace odobench

@@ -1,0 +1,57 @@
+#include "bench/studies/run_tracks.hpp"
+
+#include <utility>
+
+#include "base/files.hpp"
+#include "reports/statistics/row_groups.hpp"
+
+namespace odobench {
+namespace fs = std::filesystem;
+
+void append_track(const PoseTrack& track, PoseColumns& columns) {
+  columns.x.insert(columns.x.end(), track.x.begin(), track.x.end());
+  columns.y.insert(columns.y.end(), track.y.begin(), track.y.end());
+  columns.theta.insert(columns.theta.end(), track.theta.begin(), track.theta.end());
+}
+
+TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loaded) {
+  TrackSet set;
+  set.problem = problem;
+  set.dataset = loaded.dataset_name();
+  set.dataset_sha256 = loaded.dataset_sha256;
+  for (const Recording& r : loaded.calibration->recordings()) {
+    set.recordings.push_back({r.id, r.trajectory, r.repetition, set.time_s.size(), r.size()});
+    for (const std::int64_t time : r.time_us) set.time_s.push_back(static_cast<double>(time) * 1e-6);
+    append_track({r.x, r.y, r.theta}, set.reference);
+  }
+  return set;
+}
+
+void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records,
+                     const fs::path& run_directory) {
+  if (!loaded.calibration) return;
+  TrackSet set = reference_tracks(loaded.name(), loaded);
+  for (const Comparison& comparison : compare(records)) {
+    if (comparison.problem != loaded.name()) continue;
+    for (const ComparisonRow& row : comparison.rows) {
+      const RunRecord& shown = *row.shown;
+      if (shown.parameters.size() != loaded.problem.parameters().size()) continue;
+      Vector z(static_cast<Eigen::Index>(shown.parameters.size()));
+      for (std::size_t i = 0; i < shown.parameters.size(); ++i)
+        z[static_cast<Eigen::Index>(i)] = shown.parameters[i].value;
+      StoredTrack track{row.label, shown.repetition, {}};
+      for (std::size_t i = 0; i < set.recordings.size(); ++i)
+        append_track(loaded.calibration->integrate(i, z), track.pose);
+      set.tracks.push_back(std::move(track));
+    }
+  }
+  save_tracks(set, run_directory);
+}
+
+void save_tracks(const TrackSet& set, const fs::path& run_directory) {
+  FileTransaction transaction;
+  for (const auto& [file, bytes] : track_files(set)) transaction.add(run_directory / file, bytes);
+  transaction.commit();
+}
+
+}  // namespace odobench

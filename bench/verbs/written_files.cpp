@@ -1,0 +1,38 @@
+#include "bench/verbs/written_files.hpp"
+
+#include "base/files.hpp"
+#include "base/sha256.hpp"
+
+namespace odobench {
+
+Table written_table(const std::vector<std::filesystem::path>& files) {
+  Table table{"written",
+              "Files written",
+              {text_column("file"), number_column("bytes"), text_column("sha256")},
+              {},
+              {}};
+  for (const std::filesystem::path& file : files) {
+    const std::string bytes = read_file(file);
+    table.rows.push_back(
+        {text_cell(file.string()), count_cell(static_cast<double>(bytes.size())), text_cell(sha256(bytes))});
+  }
+  return table;
+}
+
+Table dataset_table(const Dataset& dataset) {
+  double samples = 0, seconds = 0;
+  for (const Recording& r : dataset.recordings) {
+    samples += static_cast<double>(r.size());
+    if (r.size() > 1) seconds += static_cast<double>(r.time_us.back() - r.time_us.front()) * 1e-6;
+  }
+  return {"dataset",
+          "Data set " + dataset.name,
+          {text_column("name"), number_column("trajectories"), number_column("recordings"),
+           number_column("samples"), number_column("duration", "duration", "s")},
+          {{text_cell(dataset.name), count_cell(static_cast<double>(dataset.trajectories.size())),
+            count_cell(static_cast<double>(dataset.recordings.size())), count_cell(samples),
+            fixed_cell(seconds, 3)}},
+          dataset.notes};
+}
+
+}  // namespace odobench

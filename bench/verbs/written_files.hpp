@@ -1,0 +1,19 @@
+// What a verb without tables of its own says with --json: the files it wrote.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "datasets/dataset.hpp"
+#include "reports/render/table.hpp"
+
+namespace odobench {
+
+// "written": path, size in bytes and SHA-256 of each file, read back from the disc. Throws DataError when one cannot be read.
+Table written_table(const std::vector<std::filesystem::path>& files);
+
+// "dataset": one row of name, counts and duration.
+Table dataset_table(const Dataset& dataset);
+
+}  // namespace odobench

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/files.hpp"
+#include "base/json_node.hpp"
+#include "base/sha256.hpp"
+#include "base/text.hpp"
+#include "datasets/dataset.hpp"
+#include "datasets/native/columns.hpp"
+#include "datasets/native/dataset_format.hpp"
+#include "datasets/native/recording_file.hpp"
+#include "datasets/native/validate.hpp"
+
+namespace odobench {
+namespace fs = std::filesystem;
+namespace {
+
+void check_schema(const JsonNode& root) {
+  const JsonNode schema = root.at("schema");
+  if (schema.text() != kDatasetSchema)
+    schema.fail('"' + schema.text() + '"', fmt::format("\"{}\"", kDatasetSchema));
+  const JsonNode version = root.at("schema_version");
+  if (version.integer() != kDatasetSchemaVersion)
+    version.fail(fmt::format("version {}", version.integer()),
+                 fmt::format("version {}", kDatasetSchemaVersion));
+  root.allow_only({"schema", "schema_version", "name", "description", "robot", "trajectories", "recordings",
+                   "known_parameters", "provenance", "notes"});
+}
+
+Robot read_robot(const JsonNode& node) {
+  node.allow_only({"name", "kinematics", "parameters"});
+  Robot robot{node.at("name").text(), node.at("kinematics").text(), {}};
+  for (const JsonNode& p : node.at("parameters").elements()) {
+    p.allow_only({"name", "unit", "nominal", "lower", "upper"});
+    robot.parameters.push_back({p.at("name").text(), p.at("unit").text(), p.at("nominal").number(),
+                                p.at("lower").number(), p.at("upper").number()});
+  }
+  return robot;
+}
+
+Trajectory read_trajectory(const JsonNode& node) {
+  node.allow_only({"name", "description"});
+  return {node.at("name").text(), node.text_or_empty("description")};
+}
+
+// Values come as {"a1": ..., ...}: no order to get wrong in a file written by hand.
+NamedParameters read_known_parameters(const JsonNode& node, const Robot& robot) {
+  node.allow_only({"name", "description", "values"});
+  NamedParameters known{node.at("name").text(), node.text_or_empty("description"), {}};
+  const JsonNode values = node.at("values");
+  for (const std::string& key : values.keys())
+    if (std::none_of(robot.parameters.begin(), robot.parameters.end(),
+                     [&](const auto& p) { return p.name == key; }))
+      values.fail(fmt::format("unknown key \"{}\"", key), "the names in /robot/parameters");
+  for (const RobotParameter& p : robot.parameters) known.values.push_back(values.at(p.name).number());
+  return known;
+}
+
+Provenance read_provenance(const JsonNode& node) {
+  node.allow_only({"source", "licence", "made_by", "files"});
+  Provenance provenance{
+      node.text_or_empty("source"), node.text_or_empty("licence"), node.text_or_empty("made_by"), {}};
+  if (!node.has("files")) return provenance;
+  for (const JsonNode& file : node.at("files").elements()) {
+    file.allow_only({"path", "sha256"});
+    provenance.files.push_back({file.at("path").text(), file.at("sha256").text()});
+  }
+  return provenance;
+}
+
+// Id, trajectory and repetition only: the set as a whole is checked before any recording is opened.
+Recording read_recording_head(const JsonNode& node) {
+  node.allow_only({"id", "trajectory", "repetition", "samples", "file", "sha256", "columns"});
+  Recording recording;
+  recording.id = node.at("id").text();
+  recording.trajectory = node.at("trajectory").text();
+  const std::int64_t repetition = node.at("repetition").integer();
+  if (repetition < 1 || repetition > std::numeric_limits<int>::max())
+    node.at("repetition").fail(fmt::format("{}", repetition), "1 or more");
+  recording.repetition = static_cast<int>(repetition);
+  if (node.has("columns") == node.has("file"))
+    node.fail(node.has("file") ? "both \"file\" and \"columns\"" : "neither \"file\" nor \"columns\"",
+              "one of them");
+  return recording;
+}
+
+void read_inline_columns(const JsonNode& node, Recording& recording) {
+  if (node.has("sha256")) node.fail("\"sha256\" beside inline columns", "it beside \"file\" only");
+  const JsonNode columns = node.at("columns");
+  recording.time_us = columns.at("time_us").integers();
+  std::size_t names = 1;
+  for_each_value_column(recording, [&](const std::string& name, const char*, std::vector<double>& values) {
+    values = columns.at(name).numbers();
+    ++names;
+  });
+  if (columns.keys().size() != names) {
+    columns.allow_only({"time_us", "x", "y", "theta", "steering_1", "steering_2", "steering_3", "steering_4",
+                        "wheel_speed_1", "wheel_speed_2", "wheel_speed_3", "wheel_speed_4"});
+  }
+  if (const auto fault = find_fault(recording)) {
+    const JsonNode column = columns.at(fault->column);
+    throw DataError(fmt::format("{}: {}{}: {}", column.file(), column.path(),
+                                fault->sample ? fmt::format("/{}", *fault->sample) : "", fault->what));
+  }
+  if (node.has("samples") && node.at("samples").integer() != static_cast<std::int64_t>(recording.size()))
+    node.at("samples").fail(fmt::format("{}", node.at("samples").integer()),
+                            fmt::format("{} as in time_us", recording.size()));
+}
+
+// FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither by its text nor
+// through a link.
+fs::path file_below(const fs::path& folder, const JsonNode& node) {
+  const std::string text = node.text();
+  const fs::path relative = text;
+  const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
+  const bool odd = std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; });
+  if (relative.empty() || relative.is_absolute() || climbs || odd)
+    node.fail('"' + shown(text) + '"', "a path below the folder of the set");
+  fs::path file = folder;
+  std::error_code e;
+  bool linked = false;
+  for (const fs::path& part : relative) linked = fs::is_symlink(file /= part, e) || linked;
+  if (!linked) return file;
+  const fs::path inside = fs::weakly_canonical(folder.empty() ? "." : folder, e);
+  const fs::path target = fs::weakly_canonical(file, e);
+  if (std::mismatch(inside.begin(), inside.end(), target.begin(), target.end()).first != inside.end())
+    node.fail(fmt::format("a link to {}", shown_path(target)), "a file below the folder of the set");
+  return file;
+}
+
+void read_recording_file(const JsonNode& node, const fs::path& folder, Recording& recording) {
+  const fs::path file = file_below(folder, node.at("file"));
+  const std::int64_t samples = node.at("samples").integer();
+  if (samples < 2) node.at("samples").fail(fmt::format("{} samples", samples), "at least 2");
+  const std::string sum = node.at("sha256").text();
+  if (!is_sha256(sum)) node.at("sha256").fail('"' + sum + '"', "64 lower-case hexadecimal digits");
+  decode_recording(read_file(file), {file.string(), static_cast<std::size_t>(samples), sum}, recording);
+}
+
+}  // namespace
+
+Dataset load_dataset(const fs::path& set_json) {
+  const JsonNode root = JsonNode::read(set_json);
+  check_schema(root);
+  Dataset d;
+  d.name = root.at("name").text();
+  d.description = root.text_or_empty("description");
+  d.robot = read_robot(root.at("robot"));
+  validate_robot(d.robot, set_json.string());
+  for (const JsonNode& t : root.at("trajectories").elements()) d.trajectories.push_back(read_trajectory(t));
+  const std::vector<JsonNode> recordings = root.at("recordings").elements();
+  for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r));
+  if (root.has("known_parameters"))
+    for (const JsonNode& k : root.at("known_parameters").elements())
+      d.known_parameters.push_back(read_known_parameters(k, d.robot));
+  if (root.has("provenance")) d.provenance = read_provenance(root.at("provenance"));
+  if (root.has("notes"))
+    for (const JsonNode& n : root.at("notes").elements()) d.notes.push_back(n.text());
+  validate_dataset(d, set_json.string());
+
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (recordings[i].has("columns"))
+      read_inline_columns(recordings[i], d.recordings[i]);
+    else
+      read_recording_file(recordings[i], set_json.parent_path(), d.recordings[i]);
+  }
+  return d;
+}
+
+}  // namespace odobench

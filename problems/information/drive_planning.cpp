@@ -1,0 +1,212 @@
+#include "problems/information/drive_planning.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/range.hpp"
+
+namespace odobench {
+namespace {
+
+// Eigenvalues of J'J below this share of the largest are what rounding leaves of zero.
+constexpr double kRounding = 1e-15;
+// Entries of a sparse direction below this share of its largest are left out of its words.
+constexpr double kNegligible = 0.05;
+
+Vector scales_of(const std::vector<ParameterInfo>& parameters) {
+  Vector s(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
+    s[i] = p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
+  }
+  return s;
+}
+
+struct Totals {
+  Matrix normal, scatter;
+};
+
+Totals totals(std::span<const DriveInformation> drives, const std::vector<int>& counts, Eigen::Index n,
+              const DriveInformation& fixed = {}) {
+  if (drives.size() != counts.size())
+    throw std::invalid_argument(
+        fmt::format("planning: {} drives and {} counts, expected as many", drives.size(), counts.size()));
+  Totals t{Matrix::Zero(n, n), Matrix::Zero(n, n)};
+  Vector bias = Vector::Zero(n);
+  if (fixed.normal.size() > 0) {
+    t.normal += fixed.normal;
+    t.scatter += fixed.scatter;
+    bias += fixed.bias;
+  }
+  for (std::size_t d = 0; d < drives.size(); ++d) {
+    t.normal += counts[d] * drives[d].normal;
+    t.scatter += counts[d] * drives[d].scatter;
+    bias += counts[d] * drives[d].bias;
+  }
+  t.scatter += bias * bias.transpose();
+  return t;
+}
+
+// Reduced column echelon form with complete pivoting: each column has a 1 where the others have 0.
+Matrix sparse_basis(Matrix basis) {
+  for (Eigen::Index column = 0; column < basis.cols(); ++column) {
+    Eigen::Index row = 0, from = 0;
+    basis.rightCols(basis.cols() - column).cwiseAbs().maxCoeff(&row, &from);
+    basis.col(column).swap(basis.col(column + from));
+    basis.col(column) /= basis(row, column);
+    for (Eigen::Index other = 0; other < basis.cols(); ++other)
+      if (other != column) basis.col(other) -= basis(row, other) * basis.col(column);
+  }
+  for (Eigen::Index column = 0; column < basis.cols(); ++column) {
+    Eigen::Index row = 0;
+    basis.col(column).cwiseAbs().maxCoeff(&row);
+    basis.col(column) /= basis(row, column);
+  }
+  return basis;
+}
+
+// "a1, a3 against a2": larger in size on one side, smaller on the other; nominal values may be negative.
+std::string words(const Vector& q, const std::vector<ParameterInfo>& parameters) {
+  std::string one, other;
+  double first = 0;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
+    if (std::abs(q[i]) < kNegligible) continue;
+    const double sign = q[i] * (p.nominal < 0 ? -1 : 1);
+    if (first == 0) first = sign;
+    std::string& side = sign * first > 0 ? one : other;
+    side += (side.empty() ? "" : ", ") + p.name;
+  }
+  if (other.empty()) return one.find(',') == std::string::npos ? one + " alone" : one + " together";
+  return one + " against " + other;
+}
+
+}  // namespace
+
+DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
+                                   const std::vector<Recording>& replicas, const Vector& truth,
+                                   InstructionSet kernel) {
+  if (replicas.size() < 2)
+    throw std::invalid_argument(
+        fmt::format("planning: drive '{}' has {} replicas, expected at least 2", name, replicas.size()));
+  const Vector scale = scales_of(parameters);
+  const Eigen::Index n = scale.size();
+  DriveInformation d{name, Matrix::Zero(n, n), Vector::Zero(n), Matrix::Zero(n, n)};
+  const auto count = static_cast<double>(replicas.size());
+  Matrix scores(n, static_cast<Eigen::Index>(replicas.size()));
+  for (std::size_t k = 0; k < replicas.size(); ++k) {
+    NormalEquations e;
+    CalibrationProblem(parameters, {replicas[k]}, kernel).normal_equations(truth, e);
+    d.normal += scale.asDiagonal() * e.jtj * scale.asDiagonal() / count;
+    scores.col(static_cast<Eigen::Index>(k)) = scale.cwiseProduct(e.jtr);
+  }
+  d.bias = scores.rowwise().mean();
+  const Matrix deviations = scores.colwise() - d.bias;
+  d.scatter = deviations * deviations.transpose() / (count - 1);
+  return d;
+}
+
+DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
+                                   const Recording& recording, const Vector& truth, double sigma,
+                                   InstructionSet kernel) {
+  const Vector scale = scales_of(parameters);
+  NormalEquations e;
+  CalibrationProblem(parameters, {recording}, kernel).normal_equations(truth, e);
+  const Matrix normal = scale.asDiagonal() * e.jtj * scale.asDiagonal();
+  return {name, normal, Vector::Zero(scale.size()), sigma * sigma * normal};
+}
+
+PlanAnalysis analyse_drives(std::span<const DriveInformation> drives, const std::vector<int>& counts,
+                            const std::vector<ParameterInfo>& parameters, double wanted) {
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  const Totals t = totals(drives, counts, n);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(t.normal);
+  const double cut = kRounding * static_cast<double>(n) * std::max(eigen.eigenvalues()[n - 1], 0.0);
+  Eigen::Index invisible = 0;
+  while (invisible < n && eigen.eigenvalues()[invisible] <= cut) ++invisible;
+  const Matrix dark = eigen.eigenvectors().leftCols(invisible);
+  const Matrix seen = eigen.eigenvectors().rightCols(n - invisible);
+
+  // Covariance in the basis of what the drives show; what they do not has none.
+  const Vector inverse = eigen.eigenvalues().tail(n - invisible).cwiseInverse();
+  const Matrix inner = inverse.asDiagonal() * (seen.transpose() * t.scatter * seen) * inverse.asDiagonal();
+  const Matrix covariance = seen * inner * seen.transpose();
+  PlanAnalysis a;
+  a.standard_deviations = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (dark.row(i).norm() > 1e-6) a.standard_deviations[i] = kInfinity;
+
+  Matrix undetermined(n, n);
+  Eigen::Index count = 0;
+  if (n > invisible) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> principal(inner);
+    for (Eigen::Index k = 0; k < n - invisible; ++k) {
+      const double sd = std::sqrt(std::max(principal.eigenvalues()[k], 0.0));
+      a.directions.push_back({sd > 0 ? 1 / sd : kInfinity, sd, seen * principal.eigenvectors().col(k)});
+      if (sd > wanted) undetermined.col(count++) = a.directions.back().vector;
+    }
+  }
+  for (Eigen::Index k = invisible; k-- > 0;) {
+    a.directions.push_back({0, kInfinity, dark.col(k)});
+    undetermined.col(count++) = dark.col(k);
+  }
+  a.undetermined = sparse_basis(undetermined.leftCols(count));
+  for (Eigen::Index k = 0; k < count; ++k)
+    a.undetermined_words.push_back(words(a.undetermined.col(k), parameters));
+  return a;
+}
+
+std::vector<Proposal> propose_drives(std::span<const DriveInformation> drives, std::vector<int> counts,
+                                     const DriveInformation& fixed,
+                                     const std::vector<ParameterInfo>& parameters, double wanted, int most) {
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  const Vector scale = scales_of(parameters);
+  Matrix all = Matrix::Zero(n, n), noise = Matrix::Zero(n, n);
+  for (const DriveInformation& d : drives) {
+    all += d.normal;
+    noise += d.scatter + d.bias * d.bias.transpose();
+  }
+  // The box as a measurement with the noise that the drives have on average.
+  const double variance = std::max(noise.trace() / all.trace(), 1e-300);
+  Vector ridge(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
+    const double half = std::max((p.upper - p.lower) / 2 / scale[i], 1e-9);
+    ridge[i] = variance / (half * half);
+  }
+  const auto deviations = [&](const std::vector<int>& c) {
+    const Totals t = totals(drives, c, n, fixed);
+    const Matrix normal = t.normal + Matrix(ridge.asDiagonal());
+    const Matrix scatter = t.scatter + Matrix((variance * ridge).asDiagonal());
+    const Eigen::LDLT<Matrix> factor(normal);
+    const Matrix half = factor.solve(scatter);
+    return Vector(factor.solve(Matrix(half.transpose())).diagonal().cwiseMax(0.0).cwiseSqrt());
+  };
+  const auto excess = [&](const Vector& sd) { return (sd.array() / wanted).log().max(0.0).sum(); };
+
+  std::vector<Proposal> list;
+  Vector now = deviations(counts);
+  while (now.maxCoeff() > wanted && static_cast<int>(list.size()) < most) {
+    std::size_t best = 0;
+    double lowest = kInfinity;
+    for (std::size_t d = 0; d < drives.size(); ++d) {
+      ++counts[d];
+      const double value = excess(deviations(counts));
+      --counts[d];
+      if (value < lowest) {
+        lowest = value;
+        best = d;
+      }
+    }
+    ++counts[best];
+    now = deviations(counts);
+    list.push_back({best, now.maxCoeff()});
+  }
+  return list;
+}
+
+}  // namespace odobench

@@ -1,0 +1,63 @@
+#include "reports/kinds/calibration/calibration_tables.hpp"
+
+#include <utility>
+
+#include "reports/kinds/calibration/summary_tables.hpp"
+#include "reports/kinds/calibration/table_parts.hpp"
+#include "reports/statistics/row_groups.hpp"
+
+namespace odobench {
+namespace {
+
+void append(std::vector<Table>& tables, std::optional<Table> table) {
+  if (table) tables.push_back(std::move(*table));
+}
+
+void append_notes(Table& table, const std::vector<std::string>& notes) {
+  table.notes.insert(table.notes.end(), notes.begin(), notes.end());
+}
+
+// Parameter table with the notes, else the notes go to `otherwise`.
+void append_parameters(std::vector<Table>& tables, const Comparison& comparison, Table& otherwise,
+                       const std::vector<std::string>& notes) {
+  std::optional<Table> parameters = parameter_table(comparison);
+  append_notes(parameters ? *parameters : otherwise, notes);
+  append(tables, std::move(parameters));
+}
+
+}  // namespace
+
+std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
+                                     const std::vector<std::string>& notes) {
+  std::vector<Table> tables;
+  for (const Comparison& comparison : compare(records)) {
+    for (Table& table : error_tables(comparison)) tables.push_back(std::move(table));
+    Table solvers = solver_table(comparison);
+    append_parameters(tables, comparison, solvers, notes);
+    append(tables, totals_table(comparison));
+    tables.push_back(std::move(solvers));
+    append(tables, repeats_table(comparison));
+  }
+  for (Table& table : summary_tables(records)) tables.push_back(std::move(table));
+  return tables;
+}
+
+std::vector<Table> evaluation_tables(const std::vector<RunRecord>& records,
+                                     const std::vector<std::string>& notes) {
+  std::vector<Table> tables;
+  for (const Comparison& comparison : compare(records)) {
+    Table cost = cost_table(comparison);
+    std::vector<Table> rest;
+    if (comparison.rows.size() == 1)
+      append(rest, error_overview(comparison));
+    else
+      rest = error_tables(comparison);
+    append_parameters(rest, comparison, cost, notes);
+    append(rest, totals_table(comparison));
+    tables.push_back(std::move(cost));
+    for (Table& table : rest) tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace odobench

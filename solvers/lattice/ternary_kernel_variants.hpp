@@ -1,0 +1,12 @@
+// The compiled widths; avx2() and avx512() exist on x86-64 only.
+#pragma once
+
+#include "solvers/lattice/ternary_kernel.hpp"
+
+namespace odobench::ternary {
+
+Kernel baseline();  // 2 lanes: SSE2, NEON, or whatever every processor of the target has
+Kernel avx2();      // 4 lanes
+Kernel avx512();    // 8 lanes
+
+}  // namespace odobench::ternary
