@@ -175,7 +175,13 @@ TEST(Baseline, EvaluationsMayGrowByTheFactorOnly) {
   found[1].evaluations = 1;
   EXPECT_TRUE(check(found).passed);
   found[1].evaluations = 21;
-  EXPECT_THAT(findings(check(found)), ElementsAre("moved lm evaluations"));
+  const BaselineReport report = check(found);
+  EXPECT_THAT(findings(report), ElementsAre("moved lm evaluations"));
+  const auto& row = report.table.rows[0];
+  EXPECT_EQ(row[4].value, 10);
+  EXPECT_EQ(row[5].value, 21);
+  EXPECT_EQ(row[6].value, 11);
+  EXPECT_EQ(row[7].value, 10);
   Tolerances without = tolerances();
   without.evaluations_factor.reset();
   EXPECT_TRUE(check_baseline(make_baseline(records(), without), found).passed);
