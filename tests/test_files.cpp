@@ -283,6 +283,7 @@ TEST(FileLocks, TheSecondWaitsAndThenSaysWhoHasIt) {
   const int one = ::open(file.c_str(), O_RDONLY), other = ::open(file.c_str(), O_RDONLY);
   lock_place(one, file, milliseconds(0));
   lock_place(one, file, milliseconds(0));  // its own already
+  lock_place(-1, file, milliseconds(0));   // what cannot be locked is left without
   const auto begin = std::chrono::steady_clock::now();
   const std::string message = usage_error([&] { lock_place(other, file, milliseconds(50)); });
   EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(50));

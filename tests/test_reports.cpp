@@ -275,9 +275,10 @@ TEST(Statistics, HandComputedErrors) {
 }
 
 TEST(Statistics, LargeNumbersOfASmallSpread) {
-  const ErrorStatistics e = error_statistics_of({1e9, 1e9 + 1, 1e9 + 2});
-  EXPECT_EQ(e.mean, 1e9 + 1);
-  EXPECT_EQ(e.sigma, 1);
+  const ErrorStatistics e = error_statistics_of({1e9, 1e9, 1e9 + 1});
+  EXPECT_DOUBLE_EQ(e.mean, 1e9 + 1.0 / 3);
+  EXPECT_NEAR(e.sigma, std::sqrt(1.0 / 3),
+              1e-6);  // of deviations from the mean, not of squares of the numbers
   const ErrorStatistics zero = error_statistics_of({0, 0, 0});
   EXPECT_EQ(zero.mean, 0);
   EXPECT_EQ(zero.sigma, 0);
@@ -290,6 +291,7 @@ TEST(Statistics, OneRepetitionHasNoStandardDeviation) {
   EXPECT_EQ(e.max, 2);
   EXPECT_EQ(e.mean, 2);
   EXPECT_TRUE(std::isnan(e.sigma));
+  EXPECT_DOUBLE_EQ(error_statistics_of({2, 4}).sigma, std::sqrt(2.0));
 }
 
 TEST(Statistics, NotANumberIsNotSwallowed) {

@@ -39,6 +39,8 @@ TEST(Text, BytesThatAreNoUtf8AreShownAsBytes) {
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // a surrogate
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond Unicode
   EXPECT_FALSE(is_valid_utf8("\xf4\x90\x80\x80"));
+  EXPECT_FALSE(is_valid_utf8(std::string_view("\u00e4").substr(0, 1)));  // the rest lies behind the end
+  EXPECT_EQ(printable(std::string_view("\u20ac").substr(0, 2)), "\\xe2\\x82");
   for (int first = 0; first < 256; ++first)
     for (int second = 0; second < 256; ++second) {
       const std::string text{static_cast<char>(first), static_cast<char>(second)};
