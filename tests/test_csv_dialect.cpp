@@ -256,7 +256,9 @@ TEST(CsvDialect, NumbersAtTheirLimits) {
   for (int row = 0; row < 3; ++row) {
     table.next();
     EXPECT_EQ(table.number(0), 1 + 2 * row);
-    if (row < 2) EXPECT_EQ(table.number(1), row == 0 ? 2.5 : 4);
+    if (row < 2) {
+      EXPECT_EQ(table.number(1), row == 0 ? 2.5 : 4);
+    }
   }
   EXPECT_EQ(data_error([&] { table.number(1); }),
             "t.csv:4: found \"6.5\" in column \"b\", expected a decimal comma as in the numbers before it");

@@ -8,6 +8,7 @@
 #include "problems/entropy/window_problem.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
+#include "solvers/ternary_kernel.hpp"
 #include "solvers/ternary_search.hpp"
 #include "tests/support/entropy_windows.hpp"
 
@@ -314,6 +315,26 @@ TEST(TernaryExact, StoppedBranchAndBoundKeepsItsIncumbent) {
   const Result cut = solve(handle, {"exact", {}}, handle.start(), options);
   EXPECT_EQ(cut.termination, Termination::TimeLimit) << cut.brief();
   EXPECT_LE(cut.cost, -greedy * (1 + 1e-12)) << cut.brief();
+}
+
+// Rows are taken four at a time, and the rest one by one.
+TEST(TernaryExact, TheFirstOfEqualRowsIsTheSmallest) {
+  for (const InstructionSet set : available_instruction_sets()) {
+    const ternary::Kernel kernel = ternary::select(set);
+    for (int rows = 1; rows <= 11; ++rows)
+      for (int first = 0; first < rows; ++first) {
+        const int columns = 2 * ternary::kPad;
+        std::vector<double> table(static_cast<std::size_t>(rows * columns), 5.0), row(11, 0.0),
+            column(16, 0.0);
+        column[3] = -2;
+        row[static_cast<std::size_t>(first)] =
+            -1;  // 5 - |-2 - 1|, by which the row is lower than those before
+        for (int i = first + 1; i < rows; ++i)
+          table[static_cast<std::size_t>(i * columns + 11)] = 2;  // as low
+        EXPECT_EQ(kernel.smallest(table.data(), row.data(), rows, column.data(), columns), first)
+            << to_string(set) << " " << rows;
+      }
+  }
 }
 
 // Equal gains: the smallest scan position wins, and standing still beats a change that gains nothing.

@@ -258,7 +258,7 @@ TEST(FileIo, ClosedStandardDescriptorsAreTaken) {
     char byte = 0;
     bool good = ::read(0, &byte, 1) == 0;
     for (const int fd : {1, 2}) good = good && ::write(fd, &byte, 1) == -1 && errno == EBADF;
-    return good && ::open("/dev/null", O_RDONLY) == 3 ? 0 : 1;
+    return good && ::open("/dev/null", O_RDONLY) > 2 ? 0 : 1;
   };
   EXPECT_EXIT(::_exit(closed_and_taken()), ::testing::ExitedWithCode(0), "");
 }

@@ -199,6 +199,7 @@ TEST(Vitko2024Wheels, RefusesOtherLists) {
   for (const char* list : {"(", "[1,2,3,4,5,6,7,8)", "(1,2,3,4,5,6,7,8]", "1", "(1,2,3,4,5,6,7,8", "1,2)"})
     EXPECT_EQ(error(list), fmt::format("f:2: found \"{}\"{}", list, expected));
   EXPECT_EQ(error(""), "f:2: found nothing" + expected);
+  EXPECT_EQ(error("[]"), "f:2: found 0 entries in column \".position\", expected 8 as there are names");
   EXPECT_EQ(error("( )"), "f:2: found 0 entries in column \".position\", expected 8 as there are names");
   EXPECT_EQ(error("(1)"), "f:2: found 1 entries in column \".position\", expected 8 as there are names");
   EXPECT_EQ(error("(1,2,3,4,5,6,7,8,9)"),
