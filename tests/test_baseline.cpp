@@ -177,6 +177,7 @@ TEST(Baseline, EvaluationsMayGrowByTheFactorOnly) {
   found[1].evaluations = 21;
   const BaselineReport report = check(found);
   EXPECT_THAT(findings(report), ElementsAre("moved lm evaluations"));
+  EXPECT_FALSE(report.passed);
   const auto& row = report.table.rows[0];
   EXPECT_EQ(row[4].value, 10);
   EXPECT_EQ(row[5].value, 21);

@@ -354,6 +354,19 @@ TEST(TernaryGreedy, TiesGoToTheFirstCandidate) {
   }
 }
 
+// The first entry promises most, but the two others together turn it back: 0.4 better.
+TEST(TernaryGreedy, MovesAreTakenBack) {
+  QuadraticBlock block{{0, 1, 2}, Matrix::Identity(3, 3), Vector::Zero(3)};
+  for (Eigen::Index i : {1, 2}) block.q(0, i) = block.q(i, 0) = 0.6;
+  for (const InstructionSet kernel : available_instruction_sets())
+    for (const double sign : {1.0, -1.0}) {
+      block.g = sign * Eigen::Vector3d(3, 2.9, 2.9);
+      const Solved solved = solve_blocks({0, {block}}, *ternary_greedy({block}, kernel));
+      EXPECT_EQ(solved.t, Vector(sign * Eigen::Vector3d(0, 1, 1))) << to_string(kernel);
+      EXPECT_NEAR(solved.hamiltonian, 3.8, 1e-14);  // minus the cost
+    }
+}
+
 TEST(TernarySearch, RefusesBlocksItCannotTrust) {
   const QuadraticBlock indefinite{{0, 1}, -Matrix::Identity(2, 2), Vector::Zero(2)};
   const QuadraticBlock ragged{{0, 1}, Matrix::Identity(2, 2), Vector::Zero(3)};
