@@ -175,7 +175,14 @@ TEST(Baseline, EvaluationsMayGrowByTheFactorOnly) {
   found[1].evaluations = 1;
   EXPECT_TRUE(check(found).passed);
   found[1].evaluations = 21;
-  EXPECT_THAT(findings(check(found)), ElementsAre("moved lm evaluations"));
+  const BaselineReport report = check(found);
+  EXPECT_THAT(findings(report), ElementsAre("moved lm evaluations"));
+  EXPECT_FALSE(report.passed);
+  const auto& row = report.table.rows[0];
+  EXPECT_EQ(row[4].value, 10);
+  EXPECT_EQ(row[5].value, 21);
+  EXPECT_EQ(row[6].value, 11);
+  EXPECT_EQ(row[7].value, 10);
   Tolerances without = tolerances();
   without.evaluations_factor.reset();
   EXPECT_TRUE(check_baseline(make_baseline(records(), without), found).passed);
@@ -241,8 +248,24 @@ TEST(Baseline, MissingAndAdditionalTrajectories) {
   EXPECT_THAT(findings(report), ElementsAre("additional lm new"));
 }
 
+// Of no error, so that no sum shows that it is gone.
+TEST(Baseline, AMissingTrajectoryFailsByItself) {
+  auto made = records();
+  testing::add_errors(made[1], "still", {0, 0});
+  const BaselineReport report = check_baseline(make_baseline(made, tolerances()), records());
+  EXPECT_THAT(findings(report), ElementsAre("missing lm still"));
+  EXPECT_FALSE(report.passed);
+}
+
 TEST(Baseline, RunsWithoutAResult) {
   auto found = records();
+  found[1].cost.reset();
+  BaselineReport report = check(found);
+  EXPECT_THAT(findings(report), ElementsAre("moved lm J"));
+  EXPECT_FALSE(report.passed);
+  EXPECT_EQ(report.table.rows[0][4].value, 100);
+  EXPECT_EQ(report.table.rows[0][5].text, "none");
+  found = records();
   found[1].cost.reset();
   found[1].errors.clear();
   EXPECT_THAT(findings(check(found)), ElementsAre("moved lm J", "missing lm circle", "missing lm line_x"));
@@ -373,6 +396,30 @@ TEST(BaselineSamples, FailedRunsAndEffortCountToo) {
   EXPECT_FALSE(check_baseline(baseline, found).passed);
   for (RunRecord& r : found) r.evaluations = 1;
   EXPECT_TRUE(check_baseline(baseline, found).passed) << "fewer evaluations";
+}
+
+// All moves here are significant: it is the tolerance that decides.
+TEST(BaselineSamples, TolerancesAreOfTheMedian) {
+  Tolerances wide = tolerances();
+  wide.cost_relative = 0.01;  // of 100.045
+  const Baseline cost = make_baseline(noisy(100), wide);
+  EXPECT_TRUE(check_baseline(cost, noisy(100.99)).passed);
+  EXPECT_TRUE(check_baseline(cost, noisy(99.01)).passed);
+  EXPECT_FALSE(check_baseline(cost, noisy(101.01)).passed);
+  EXPECT_FALSE(check_baseline(cost, noisy(98.99)).passed);
+  const auto longer_by = [](std::int64_t evaluations) {
+    auto list = noisy(1);
+    for (RunRecord& r : list) r.evaluations += evaluations;
+    return list;
+  };
+  const Baseline twice = make_baseline(longer_by(45), tolerances());  // 55 to 145, the median is 100
+  EXPECT_TRUE(check_baseline(twice, longer_by(145)).passed);
+  const BaselineReport report = check_baseline(twice, longer_by(146));
+  EXPECT_FALSE(report.passed);
+  ASSERT_EQ(report.table.rows.size(), 1u);
+  EXPECT_THAT(report.table.rows[0][3].text, HasSubstr("evaluations, median (p = "));
+  EXPECT_EQ(report.table.rows[0][6].value, 101);
+  EXPECT_EQ(report.table.rows[0][7].value, 100);
 }
 
 TEST(BaselineSamples, RoundTripAndSingleRuns) {

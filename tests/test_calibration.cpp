@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/calibration/calibration_problem.hpp"
+#include "problems/calibration/kernel.hpp"
 #include "problems/calibration/structure.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/solve.hpp"
@@ -58,6 +59,30 @@ TEST(Calibration, StepsThatTurnFarUseTheExactRotation) {
     NormalEquations e;
     structure.normal_equations(z, e);
     EXPECT_NEAR(e.cost / direct::cost(recordings, z), 1.0, 1e-11) << to_string(k);
+  }
+}
+
+// One turn by `angle`, then a step of 1 m straight ahead.
+TEST(Calibration, TheRotationHoldsAsFarAsItSays) {
+  for (const InstructionSet set : available_instruction_sets()) {
+    const kernel::Kernel kernel = kernel::select(set);
+    const auto width = static_cast<std::size_t>(kernel.width);
+    for (const double angle : {kernel::kMaxAngle, -kernel::kMaxAngle, 0.2, 0.01, 0.0})
+      for (const bool exact : {false, true}) {
+        std::vector<double> data(2 * kernel::kStreams * width, 0.0);
+        for (std::size_t lane = 0; lane < width; ++lane) {
+          data[lane] = angle;                               // C_1 of the first step
+          data[(kernel::kStreams + 1) * width + lane] = 1;  // C_2 of the second
+        }
+        const double s[kernel::kLinear] = {0, 1, 0, 0, -1};  // r_2 = 1, P_1 = -1
+        kernel::CostSums sums{};
+        std::fill_n(sums.cos0, kernel::kMaxWidth, 1.0);
+        kernel.cost({data.data(), 2}, s, exact, sums);
+        for (std::size_t lane = 0; lane < width; ++lane) {
+          EXPECT_NEAR(sums.x[lane], std::cos(angle), 3e-16) << to_string(set) << " " << angle;
+          EXPECT_NEAR(sums.y[lane], std::sin(angle), 1e-16) << to_string(set) << " " << angle;
+        }
+      }
   }
 }
 

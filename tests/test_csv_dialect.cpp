@@ -131,5 +131,139 @@ TEST(CsvDialect, LinesAreCountedThroughCommentsAndMarks) {
   EXPECT_EQ(table.number(1), 4.0);
 }
 
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string_view> fields;
+  std::deque<std::string> unescaped;
+  if (!split_fields(line, separator, fields, unescaped)) return {"not closed"};
+  return {fields.begin(), fields.end()};
+}
+
+TEST(CsvParts, FieldsOfALine) {
+  EXPECT_THAT(split("", ','), ElementsAre(""));
+  EXPECT_THAT(split(",", ','), ElementsAre("", ""));
+  EXPECT_THAT(split(" \ta b\t ,\t", ','), ElementsAre("a b", ""));
+  EXPECT_THAT(split("a\t\tb", '\t'), ElementsAre("a", "", "b"));
+  EXPECT_THAT(split(" a \t b ", ' '), ElementsAre("a", "b"));
+  EXPECT_THAT(split("\"a;b\";\" c \" ;d", ';'), ElementsAre("a;b", " c ", "d"));
+  EXPECT_THAT(split("\"\",\"\"\"\",\"a\"\"b\"", ','), ElementsAre("", "\"", "a\"b"));
+  EXPECT_THAT(split("a\"b,\"c\"", ','), ElementsAre("a\"b", "c"));
+  for (const char* line : {"\"", "\"a", "a,\"b", "\"a\"b,c", "\"a\"\"", "\"a\" b"})
+    EXPECT_THAT(split(line, ','), ElementsAre("not closed")) << line;
+}
+
+TEST(CsvParts, TheSeparatorOfAHeader) {
+  EXPECT_EQ(find_separator("a", ';'), ';');
+  EXPECT_EQ(find_separator(" a ", ';'), ';');
+  EXPECT_EQ(find_separator("a b", ';'), ' ');
+  EXPECT_EQ(find_separator("a b,c d", ';'), ',');
+  EXPECT_EQ(find_separator("a;b,c,d", '|'), ',');
+  EXPECT_EQ(find_separator("a;b,c", '|'), ';');  // a tie
+  EXPECT_EQ(find_separator("a\tb,c", '|'), '\t');
+  EXPECT_EQ(find_separator("\"a,b,c\";\"d,e\"", '|'), ';');
+  EXPECT_EQ(CsvDialect{' '}.text(), "separated by blanks");
+}
+
+TEST(CsvParts, LinesThatNameTheSeparator) {
+  const auto named = [](std::string_view line) {
+    char separator = '?';
+    return separator_line(line, separator) ? std::string(1, separator) : "none";
+  };
+  EXPECT_EQ(named("sep=;"), ";");
+  EXPECT_EQ(named("SEP=|"), "|");
+  EXPECT_EQ(named("\"sep=|\""), "|");
+  EXPECT_EQ(named("sep="), "?");
+  for (const char* line :
+       {"", "\"", "\"\"", "sep", "sep;;", "sep=;;", "sip=;", "seq=;", "fep=;", "\"sep=;", "sep=;\""})
+    EXPECT_EQ(named(line), "none") << line;
+}
+
+TEST(CsvParts, Comments) {
+  const auto behind = [](std::string_view line) {
+    std::string_view content;
+    return comment_line(line, content) ? std::string(content) : "none";
+  };
+  EXPECT_EQ(behind("# a, b \t"), "a, b");
+  EXPECT_EQ(behind(" \t%a"), "a");
+  EXPECT_EQ(behind("#%# a"), "a");
+  EXPECT_EQ(behind("##"), "");
+  for (const char* line : {"", " ", "a # b"}) EXPECT_EQ(behind(line), "none") << line;
+}
+
+TEST(CsvParts, WhatLooksLikeANumber) {
+  for (const char* field : {"0", "-1.5", "+1,5", "1e-3", "1.E5", ".5"})
+    EXPECT_TRUE(looks_like_number(field)) << field;
+  for (const char* field : {"", "-", ".", "e", "e5", "E5", "1x", "a", "1 2", "nan"})
+    EXPECT_FALSE(looks_like_number(field)) << field;
+}
+
+std::vector<std::string> names(const std::string& text, char usual = ',') {
+  return CsvTable(text, "t.csv", usual).names();
+}
+
+TEST(CsvDialect, HeadersBelowWhatTheyAreReadWith) {
+  EXPECT_THAT(names("sep=;\na,b;c,d\n1;2\n"), ElementsAre("a,b", "c,d"));
+  EXPECT_THAT(names("sep=;\n# a,b;c,d\n1;2\n"), ElementsAre("a,b", "c,d"));
+  EXPECT_THAT(names("# a;b\n1;2\n"), ElementsAre("a", "b"));
+  EXPECT_THAT(names("# a;b\n1,2\n", ';'), ElementsAre("1", "2"));  // as many fields, but by another separator
+  EXPECT_THAT(names("# a b c\nx,y\n1,2\n"),
+              ElementsAre("x", "y"));  // what it would be read with is forgotten
+  EXPECT_THAT(names("# a,b\nx,2\n1,2\n"), ElementsAre("x", "2"));
+  EXPECT_THAT(names("# a,b,c\n1,2\n"), ElementsAre("1", "2"));
+  EXPECT_THAT(names("a,b\nsep=;,2\n"), ElementsAre("a", "b"));
+  CsvTable table("# made\n# a,b\n1,2\n3,4\n", "t.csv", ',');
+  EXPECT_EQ(table.header_line(), 2u);
+  EXPECT_TRUE(table.dialect().comment_header);
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.number(0), 1);
+  EXPECT_EQ(table.line(), 3u);
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.number(1), 4);
+  EXPECT_EQ(table.line(), 4u);
+  EXPECT_FALSE(table.next());
+  EXPECT_EQ(table.reading(), " (read as separated by ',', header in a comment)");
+}
+
+TEST(CsvDialect, ColumnsAreNamedOnce) {
+  CsvTable table("a,b,a,c\n1,2,3,4\n", "t.csv", ',');
+  EXPECT_EQ(table.column("b"), 1u);
+  EXPECT_EQ(table.column("c"), 3u);
+  EXPECT_EQ(data_error([&] { table.column("a"); }), "t.csv:1: found two columns \"a\", expected one");
+  EXPECT_EQ(
+      data_error([&] { table.column("d"); }),
+      "t.csv:1: found no column \"d\", expected it among the 4 of the header (read as separated by ',')");
+}
+
+TEST(CsvDialect, NumbersAtTheirLimits) {
+  const auto number = [](const std::string& field) {
+    const std::string text = "a;b\n" + field + ";0\n";
+    CsvTable table(text, "t.csv", ';');
+    table.next();
+    return table.number(0);
+  };
+  const auto error = [&](const std::string& field) { return data_error([&] { number(field); }); };
+  EXPECT_EQ(number("+1.5"), 1.5);
+  EXPECT_EQ(number("+0"), 0);
+  EXPECT_EQ(number("-1e50"), -1e50);
+  EXPECT_EQ(number("0," + std::string(61, '0') + "1"), 1e-62);  // 64 characters
+  EXPECT_EQ(error("0," + std::string(62, '0') + "1").substr(0, 16), "t.csv:2: found \"");
+  EXPECT_EQ(error("1.1e50"),
+            "t.csv:2: found \"1.1e50\" in column \"a\", expected a number of at most 1e+50 in size");
+  for (const char* field : {"", "+", "+-1", "++1", "1 2", "inf", "1e999", "1x", "x1"}) {
+    EXPECT_EQ(error(field),
+              fmt::format("t.csv:2: found \"{}\" in column \"a\", expected a finite number", field));
+  }
+  CsvTable table("a;b\n1;2,5\n3;4\n5;6.5\n", "t.csv", ';');
+  for (int row = 0; row < 3; ++row) {
+    table.next();
+    EXPECT_EQ(table.number(0), 1 + 2 * row);
+    if (row < 2) {
+      EXPECT_EQ(table.number(1), row == 0 ? 2.5 : 4);
+    }
+  }
+  EXPECT_EQ(data_error([&] { table.number(1); }),
+            "t.csv:4: found \"6.5\" in column \"b\", expected a decimal comma as in the numbers before it");
+  EXPECT_EQ(table.reading(), " (read as separated by ';', decimal comma)");
+}
+
 }  // namespace
 }  // namespace odobench

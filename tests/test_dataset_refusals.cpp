@@ -135,6 +135,41 @@ TEST(Dataset, RefusesABadSetJson) {
       false);
 }
 
+TEST(Dataset, IdsNameFiles) {
+  const auto error = [](const std::string& id) {
+    const TemporaryFolder folder;
+    Dataset d = small_dataset();
+    d.recordings[0].id = id;
+    return data_error([&] { save_dataset(d, folder / "set.json"); });
+  };
+  for (const char* id : {"a", "azAZ09", "_", "-", "a.", "a-b_c.d"}) EXPECT_EQ(error(id), "") << id;
+  for (const char* id : {".a", "a/b", "a:b", "a@", "a[", "a`", "a{", "a b", "\u010d", "a,b", "a^b"})
+    EXPECT_TRUE(
+        says(error(id), {"set.json: /recordings/0/id: found \"" + std::string(id) + "\", expected letters"}))
+        << id;
+  EXPECT_TRUE(says(error(""), {"/recordings/0/id: found an empty text"}));
+}
+
+TEST(Dataset, BoundsMayMeetTheNominalValue) {
+  const auto error = [](double lower, double nominal, double upper) {
+    const TemporaryFolder folder;
+    Dataset d = small_dataset();
+    RobotParameter& p = d.robot.parameters[11];
+    p.lower = lower, p.nominal = nominal, p.upper = upper;
+    return data_error([&] { save_dataset(d, folder / "set.json"); });
+  };
+  EXPECT_EQ(error(1, 1, 1), "");
+  EXPECT_EQ(error(1, 1, 2), "");
+  EXPECT_EQ(error(1, 2, 2), "");
+  EXPECT_TRUE(says(error(1, 2.5, 2), {"/robot/parameters/11: found nominal 2.5 of r4 outside [1, 2]"}));
+  EXPECT_TRUE(says(error(1, 0.5, 2), {"/robot/parameters/11: found nominal 0.5 of r4 outside [1, 2]"}));
+  EXPECT_TRUE(says(error(2, 2, 1), {"/robot/parameters/11: found lower 2 > upper 1 of r4"}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::array<double, 3>& p : {std::array{nan, 1.0, 2.0}, {1.0, nan, 2.0}, {1.0, 1.0, nan}})
+    EXPECT_TRUE(
+        says(error(p[0], p[1], p[2]), {"/robot/parameters/11: found lower ", "expected finite numbers"}));
+}
+
 TEST(Dataset, RefusesBadInlineColumns) {
   expect_refused(
       {

@@ -7,6 +7,7 @@
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/window_problem.hpp"
 #include "problems/instruction_set.hpp"
+#include "solvers/lattice/ternary_kernel.hpp"
 #include "solvers/lattice/ternary_search.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/entropy_windows.hpp"
@@ -316,6 +317,26 @@ TEST(TernaryExact, StoppedBranchAndBoundKeepsItsIncumbent) {
   EXPECT_LE(cut.cost, -greedy * (1 + 1e-12)) << cut.brief();
 }
 
+// Rows are taken four at a time, and the rest one by one.
+TEST(TernaryExact, TheFirstOfEqualRowsIsTheSmallest) {
+  for (const InstructionSet set : available_instruction_sets()) {
+    const ternary::Kernel kernel = ternary::select(set);
+    for (int rows = 1; rows <= 11; ++rows)
+      for (int first = 0; first < rows; ++first) {
+        const int columns = 2 * ternary::kPad;
+        std::vector<double> table(static_cast<std::size_t>(rows * columns), 5.0), row(11, 0.0),
+            column(16, 0.0);
+        column[3] = -2;
+        row[static_cast<std::size_t>(first)] =
+            -1;  // 5 - |-2 - 1|, by which the row is lower than those before
+        for (int i = first + 1; i < rows; ++i)
+          table[static_cast<std::size_t>(i * columns + 11)] = 2;  // as low
+        EXPECT_EQ(kernel.smallest(table.data(), row.data(), rows, column.data(), columns), first)
+            << to_string(set) << " " << rows;
+      }
+  }
+}
+
 // Equal gains: the smallest scan position wins, and standing still beats a change that gains nothing.
 TEST(TernaryGreedy, TiesGoToTheFirstCandidate) {
   QuadraticBlock block{{0, 1, 2}, Matrix::Identity(3, 3), Vector::Zero(3)};
@@ -331,6 +352,19 @@ TEST(TernaryGreedy, TiesGoToTheFirstCandidate) {
     EXPECT_EQ(t_of(Eigen::Vector3d(1, -1, 1), kernel).t, Vector(Vector::Zero(3)));
     EXPECT_EQ(t_of(Eigen::Vector3d(1, -1, 1), kernel).search.iterations, 1);
   }
+}
+
+// The first entry promises most, but the two others together turn it back: 0.4 better.
+TEST(TernaryGreedy, MovesAreTakenBack) {
+  QuadraticBlock block{{0, 1, 2}, Matrix::Identity(3, 3), Vector::Zero(3)};
+  for (Eigen::Index i : {1, 2}) block.q(0, i) = block.q(i, 0) = 0.6;
+  for (const InstructionSet kernel : available_instruction_sets())
+    for (const double sign : {1.0, -1.0}) {
+      block.g = sign * Eigen::Vector3d(3, 2.9, 2.9);
+      const Solved solved = solve_blocks({0, {block}}, *ternary_greedy({block}, kernel));
+      EXPECT_EQ(solved.t, Vector(sign * Eigen::Vector3d(0, 1, 1))) << to_string(kernel);
+      EXPECT_NEAR(solved.hamiltonian, 3.8, 1e-14);  // minus the cost
+    }
 }
 
 TEST(TernarySearch, RefusesBlocksItCannotTrust) {

@@ -1,6 +1,7 @@
 // Readers of the relative-entropy filter's files: what they accept, what each number becomes, what they refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <numbers>
 #include <thread>
@@ -68,6 +69,109 @@ TEST(CsvStream, AnInterruptionEndsIt) {
   interrupt = true;
   EXPECT_FALSE(stream.next());
   EXPECT_TRUE(stream.interrupted());
+}
+
+// Standard input replaced by a pipe, until the end of the object.
+class PipedInput {
+ public:
+  PipedInput() : before_(::dup(0)) {
+    int ends[2];
+    if (::pipe(ends) != 0) ADD_FAILURE() << "no pipe";
+    ::dup2(ends[0], 0);
+    ::close(ends[0]);
+    write_end_ = ends[1];
+  }
+  ~PipedInput() {
+    close();
+    ::dup2(before_, 0);
+    ::close(before_);
+  }
+  void write(const std::string& text) const {
+    EXPECT_EQ(::write(write_end_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  void close() {
+    if (write_end_ >= 0) ::close(write_end_);
+    write_end_ = -1;
+  }
+
+ private:
+  int before_, write_end_ = -1;
+};
+
+TEST(CsvStream, ReadsStandardInputAsItComes) {
+  PipedInput input;
+  input.write("a,b\n1,2\n3");
+  std::atomic<bool> interrupt{false};
+  CsvStream stream("-", ',', &interrupt);
+  ASSERT_TRUE(stream.next());
+  EXPECT_EQ(stream.number(1), 2);
+  std::thread more([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    input.write(",4\n5\n");
+  });
+  ASSERT_TRUE(stream.next());
+  more.join();
+  EXPECT_EQ(stream.number(0), 3);
+  EXPECT_EQ(stream.number(1), 4);
+  EXPECT_EQ(data_error([&] { stream.next(); }),
+            "standard input:4: found 1 fields, expected 2 as in the header");
+  input.close();
+  EXPECT_FALSE(stream.next());
+  EXPECT_FALSE(stream.interrupted());
+}
+
+TEST(CsvStream, AnInterruptionEndsTheWaitForStandardInput) {
+  PipedInput input;
+  input.write("a\n1\n");
+  std::atomic<bool> interrupt{false};
+  CsvStream stream("-", ',', &interrupt);
+  ASSERT_TRUE(stream.next());
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    interrupt = true;
+  });
+  EXPECT_FALSE(stream.next());
+  EXPECT_TRUE(stream.interrupted());
+  later.join();
+  const CsvStream without_header("-", ',', &interrupt);
+  EXPECT_TRUE(without_header.interrupted());
+  EXPECT_TRUE(without_header.names().empty());
+}
+
+TEST(CsvStream, LinesUpToTheLongest) {
+  const TemporaryFolder folder;
+  const auto field_of = [&](std::size_t length) {
+    CsvStream stream(folder.file("a.csv", "a\n1\n" + std::string(length, 'x') + "\ny\n"), ',');
+    std::size_t longest = 0;
+    while (stream.next()) longest = std::max(longest, stream.field(0).size());
+    EXPECT_EQ(stream.line(), 4u);
+    EXPECT_EQ(stream.field(0), "y");
+    return longest;
+  };
+  for (const std::size_t length : {std::size_t{65535}, std::size_t{65536}, CsvStream::kLongestLine})
+    EXPECT_EQ(field_of(length), length);
+  EXPECT_EQ(
+      data_error([&] { field_of(CsvStream::kLongestLine + (1 << 17)); }),
+      (folder / "a.csv").string() + ":3: found a line longer than 1048576 bytes, expected rows of numbers");
+}
+
+TEST(CsvStream, LinesBehindBlankOnes) {
+  const TemporaryFolder folder;
+  const std::string blank = std::string(200000, '\n');  // more than a piece
+  CsvStream at_the_end(folder.file("a.csv", "a\r\n1\r\n" + blank + "\r\n"), ',');
+  EXPECT_TRUE(at_the_end.next());
+  EXPECT_FALSE(at_the_end.next());
+  // One column: the blank line is a row with one empty field.
+  CsvStream between(folder.file("b.csv", "a\n1\n\n2"), ',');
+  EXPECT_TRUE(between.next());
+  EXPECT_TRUE(between.next());
+  EXPECT_EQ(between.line(), 3u);
+  EXPECT_EQ(between.field(0), "");
+  EXPECT_TRUE(between.next());
+  EXPECT_EQ(between.line(), 4u);
+  EXPECT_EQ(between.number(0), 2);
+  EXPECT_TRUE(between.unfinished());
+  EXPECT_FALSE(between.next());
 }
 
 std::vector<FilterRow> read_all(FilterRunReader& reader) {

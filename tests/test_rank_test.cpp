@@ -147,6 +147,10 @@ TEST(EffectSize, CountsPairs) {
       << "1 and 2 lower than all three (6), 5 lower than 8 and ties 5 (1.5), 9 lower than none";
   EXPECT_EQ(effect_size_name(0.5), "negligible");
   EXPECT_EQ(effect_size_name(0.573), "negligible");
+  EXPECT_EQ(effect_size_name(0.574), "small");
+  EXPECT_EQ(effect_size_name(0.66), "small");
+  EXPECT_EQ(effect_size_name(0.736), "medium");
+  EXPECT_EQ(effect_size_name(0.737), "large");  // |2 A12 - 1| is 0.474 to the last bit
   EXPECT_EQ(effect_size_name(0.426), "small");
   EXPECT_EQ(effect_size_name(0.67), "medium");
   EXPECT_EQ(effect_size_name(0.74), "large");
@@ -175,6 +179,24 @@ TEST(Holm, StepsDown) {
   EXPECT_THAT(holm({0.9, 0.8}), ElementsAre(1, 1));
   EXPECT_THAT(holm({0.03}), ElementsAre(0.03));
   EXPECT_THAT(holm({}), ElementsAre());
+}
+
+// Ties of three and two: s^2 = 9 / 12 (7 - 30 / 30) = 4.5 and U = 6.5, so that z = 3 / sqrt(4.5) / 2 = sqrt(2) / 2.
+TEST(RankTest, ApproximationByHand) {
+  const RankTest test = rank_test_normal({1, 1, 2}, {1, 2, 3});
+  EXPECT_EQ(test.u, 6.5);
+  EXPECT_NEAR(test.p, std::erfc(0.5), 1e-15);
+  EXPECT_FALSE(test.exact);
+  // Without ties: s^2 = 8 / 12 * 7 = 14 / 3, U = 8.
+  EXPECT_NEAR(rank_test_normal({1, 2, 3, 4}, {5, 6}).p, std::erfc(3.5 / std::sqrt(14.0 / 3) / std::sqrt(2.0)),
+              1e-15);
+}
+
+TEST(MedianShift, DifferencesOfNothing) {
+  EXPECT_EQ(*median_shift({5, 5.5}, {1, 5}), -2.25);  // of -4.5, -4, -0.5, 0
+  EXPECT_EQ(*median_shift({1, 5}, {5, 5.5}), 2.25);
+  EXPECT_EQ(*median_shift({1, 2, 3}, {1, 2, 3}), 0);
+  EXPECT_EQ(*median_shift({1, 2}, {1, 2, 3}), 0.5);  // of -1, 0, 0, 1, 1, 2
 }
 
 }  // namespace

@@ -274,11 +274,24 @@ TEST(Statistics, HandComputedErrors) {
   EXPECT_THROW(error_statistics_of({}), std::invalid_argument);
 }
 
+TEST(Statistics, LargeNumbersOfASmallSpread) {
+  const ErrorStatistics e = error_statistics_of({1e9, 1e9, 1e9 + 1});
+  EXPECT_DOUBLE_EQ(e.mean, 1e9 + 1.0 / 3);
+  EXPECT_NEAR(e.sigma, std::sqrt(1.0 / 3),
+              1e-6);  // of deviations from the mean, not of squares of the numbers
+  const ErrorStatistics zero = error_statistics_of({0, 0, 0});
+  EXPECT_EQ(zero.mean, 0);
+  EXPECT_EQ(zero.sigma, 0);
+  EXPECT_EQ(error_statistics_of({1, kInf}).mean, kInf);
+  EXPECT_EQ(error_statistics_of({0.1, 0.2, 0.4}).mean, (0.1 + 0.2 + 0.4) / 3);
+}
+
 TEST(Statistics, OneRepetitionHasNoStandardDeviation) {
   const ErrorStatistics e = error_statistics_of({2});
   EXPECT_EQ(e.max, 2);
   EXPECT_EQ(e.mean, 2);
   EXPECT_TRUE(std::isnan(e.sigma));
+  EXPECT_DOUBLE_EQ(error_statistics_of({2, 4}).sigma, std::sqrt(2.0));
 }
 
 TEST(Statistics, NotANumberIsNotSwallowed) {
