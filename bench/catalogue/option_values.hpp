@@ -1,6 +1,7 @@
 // What several verbs do with the values of their options.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "problems/instruction_set.hpp"
 
 namespace odobench {
+
+// Ends runs whose method would go on for very long; --max-evals=none lifts it.
+inline constexpr std::int64_t kDefaultMaxEvaluations = 50000;
 
 // "a,b," gives a, b and an empty item.
 std::vector<std::string> comma_items(const std::string& list);

@@ -69,7 +69,7 @@ bool first_of(const char* option, const std::string& word, const char* first, co
 
 }  // namespace
 
-FilterSetup make_filter_setup(const FilterOptions& options) {
+FilterSetup make_filter_setup(const EntropyOptions& options) {
   FilterSetup setup;
   const bool published = options.as_published;
   setup.constants = options.constants;

@@ -2,13 +2,41 @@
 // the conversion of file rows to samples of the filter. docs/entropy_filter.md explains the choices (E2, E3, E8, E9, E11).
 #pragma once
 
-#include "bench/verbs/command_options.hpp"
+#include "bench/catalogue/option_values.hpp"
 #include "datasets/entropy/entropy_window.hpp"
 #include "datasets/entropy/filter_run.hpp"
 #include "datasets/entropy/filter_truth.hpp"
 #include "problems/entropy/entropy_model.hpp"
+#include "problems/instruction_set.hpp"
+#include "solvers/run.hpp"
 
 namespace odobench {
+
+// Where the thesis' program and the corrected filter differ; what is not set follows EntropyOptions::as_published.
+struct EntropyOptions {
+  std::string data;                   // CSV file, "-" for standard input
+  std::string truth;                  // CSV file; empty: none
+  std::string solver = "coordinate";  // coordinate, exact, relaxed, zero, or any of the registry as typed
+  std::string out;                    // CSV file; empty: none
+  std::string records;                // folder for the run record and tables; empty: none
+  std::vector<std::string> columns, truth_columns;  // name=column lists as typed
+  bool as_published = false;
+  std::optional<std::string> theta;                // of the thesis' layout: step-deg, ..., raw
+  std::optional<std::string> accelerometer_frame;  // robot | filter
+  std::optional<bool> omega_cross_v;
+  std::optional<std::string> wheel_order;  // right-first | left-first
+  std::optional<double> dt;                // s; none: from time_s
+  double time_tolerance = 0.01;            // relative
+  EntropyConstants constants;              // dt and step_rotation apart
+  std::optional<double> step_rotation;     // deg/s^2
+  bool gap = false;                        // compare with exact and relaxed
+  std::optional<InstructionSet> kernel;
+  std::uint64_t seed = 1;
+  Budget budget{kDefaultMaxEvaluations};  // per window, of a solver of the registry
+  bool overwrite = false;
+  std::string format = "console";
+  bool quiet = false;
+};
 
 struct FilterSetup {
   EntropyConstants constants;      // dt is that of the data once they are opened
@@ -21,7 +49,7 @@ struct FilterSetup {
 };
 
 // Throws std::invalid_argument on values that do not exist, constants out of range, columns nobody knows.
-FilterSetup make_filter_setup(const FilterOptions& options);
+FilterSetup make_filter_setup(const EntropyOptions& options);
 
 // A row as the filter takes it, and the displacements of its wheels in the filter's frame [m].
 struct ConvertedRow {

@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "base/files.hpp"
+#include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/studies/context.hpp"
@@ -214,6 +217,30 @@ void RecordFile::replace(const std::vector<RunRecord>& records) {
   std::string text;
   for (const RunRecord& r : records) text += to_json_line(r) + "\n";
   file_->replace(text);
+}
+
+std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
+  std::vector<RunRecord> records;
+  std::set<std::string> seen;  // check sums: two runs never agree in every digit of their times
+  std::size_t repeated = 0;
+  for (const std::string& run : runs) {
+    std::filesystem::path path = run;
+    if (std::filesystem::is_directory(path)) path /= "runs.jsonl";
+    if (!std::filesystem::exists(path))
+      throw DataError(fmt::format("{}: there is no such file", path.string()));
+    for (RunRecord& r : read_records(path.string())) {
+      if (seen.insert(sha256(to_json_line(r))).second)
+        records.push_back(std::move(r));
+      else
+        ++repeated;
+    }
+  }
+  if (repeated > 0)
+    note(fmt::format("{} record{} read twice and counted once", repeated, repeated == 1 ? " was" : "s were"));
+  if (records.empty())
+    throw DataError(fmt::format("{}: found no run record, expected at least one",
+                                shown(fmt::format("{}", fmt::join(runs, ", ")))));
+  return records;
 }
 
 }  // namespace odobench

@@ -46,4 +46,8 @@ class RecordFile {
   std::unique_ptr<LineFile> file_;
 };
 
+// Records of .jsonl files, or of runs.jsonl in folders, in the order given. Throws DataError when one does
+// not exist or nothing is in them, std::runtime_error "file:line: ..." on a bad record.
+std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs);
+
 }  // namespace odobench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/verbs/evaluate_command.hpp"
+#include "bench/studies/parameter_sets.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 
 namespace odobench {

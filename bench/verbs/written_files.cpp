@@ -1,7 +1,12 @@
 #include "bench/verbs/written_files.hpp"
 
+#include <fmt/format.h>
+
 #include "base/files.hpp"
 #include "base/sha256.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/console/interrupt.hpp"
+#include "bench/console/table_output.hpp"
 
 namespace odobench {
 
@@ -33,6 +38,18 @@ Table dataset_table(const Dataset& dataset) {
             count_cell(static_cast<double>(dataset.recordings.size())), count_cell(samples),
             fixed_cell(seconds, 3)}},
           dataset.notes};
+}
+
+void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json) {
+  InterruptGuard::remember();
+  FileTransaction transaction(existing_files(overwrite));
+  add_dataset(dataset, set, transaction, false, InterruptGuard::stop());
+  const std::vector<std::filesystem::path> files = transaction.targets();
+  transaction.commit();
+  std::size_t samples = 0;
+  for (const Recording& r : dataset.recordings) samples += r.size();
+  note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
+  if (json) print_tables({dataset_table(dataset), written_table(files)}, Format::Json);
 }
 
 }  // namespace odobench

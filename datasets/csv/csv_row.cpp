@@ -14,7 +14,7 @@ namespace odobench {
 namespace {
 
 // Enough of a wrong field to recognise it.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   return fmt::format("\"{}\"", shown(text));
 }
 
@@ -37,7 +37,7 @@ std::size_t CsvRow::column(std::string_view name) const {
 std::string CsvRow::reading() const {
   if (names_.size() == 1)
     return fmt::format(" (read as one column, {}; separators known are , ; tab and blanks)",
-                       quoted(names_.front()));
+                       in_quotes(names_.front()));
   return fmt::format(" (read as {}{}{})", dialect_.text(),
                      decimal_ == Decimal::Comma ? ", decimal comma" : "",
                      dialect_.comment_header ? ", header in a comment" : "");
@@ -153,14 +153,15 @@ double CsvRow::number(std::string_view text, std::size_t column) const {
   const Decimal now = first == point ? Decimal::Comma : has_point ? Decimal::Point : Decimal::Unknown;
   const auto [end, error] = std::from_chars(first, first + digits.size(), value);
   if (error != std::errc() || end != first + digits.size() || !std::isfinite(value))
-    fail(
-        fmt::format("found {} in column {}, expected a finite number", quoted(text), quoted(names_[column])));
+    fail(fmt::format("found {} in column {}, expected a finite number", in_quotes(text),
+                     in_quotes(names_[column])));
   if (!in_range(value))
-    fail(fmt::format("found {} in column {}, expected a number of at most {:g} in size", quoted(text),
-                     quoted(names_[column]), kLargestNumber));
+    fail(fmt::format("found {} in column {}, expected a number of at most {:g} in size", in_quotes(text),
+                     in_quotes(names_[column]), kLargestNumber));
   if (now != Decimal::Unknown && decimal_ != Decimal::Unknown && now != decimal_)
-    fail(fmt::format("found {} in column {}, expected a decimal {} as in the numbers before it", quoted(text),
-                     quoted(names_[column]), decimal_ == Decimal::Comma ? "comma" : "point"));
+    fail(fmt::format("found {} in column {}, expected a decimal {} as in the numbers before it",
+                     in_quotes(text), in_quotes(names_[column]),
+                     decimal_ == Decimal::Comma ? "comma" : "point"));
   if (now != Decimal::Unknown) decimal_ = now;
   return value;
 }

@@ -1,0 +1,46 @@
+// Recordings with one parameter set and one filter, and synthetic sensors: what `bench fuse` and `bench tune` share.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/catalogue/problem_factory.hpp"
+#include "problems/fusion/sensors_file.hpp"
+#include "reports/kinds/fusion/fusion_tables.hpp"
+#include "reports/records/tracks.hpp"
+
+namespace odobench {
+
+// One way to estimate: odometry alone, or a filter.
+struct FilterChoice {
+  std::string name;  // none, ekf, ukf, ekf-smoothed, ukf-smoothed, ekf-literal
+  bool filtered = true;
+  FilterKind kind = FilterKind::Extended;
+  bool smooth = false;
+  bool literal = false;
+};
+
+// Throws std::invalid_argument on an unknown or repeated name.
+std::vector<FilterChoice> parse_filters(const std::vector<std::string>& lists);
+
+struct FusedRow {
+  FusionRow row;
+  std::vector<RecordingError> errors;
+  PoseColumns track;  // all recordings, one after the other
+};
+
+// All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the result.
+FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const FilterChoice& filter,
+                  const SensorsFile& sensors, const std::vector<std::vector<SensorStream>>& streams,
+                  int threads);
+
+// Streams of every recording, made side by side.
+std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
+                                                   std::span<const Recording> recordings, std::uint64_t seed,
+                                                   int threads);
+// The table that says that the sensors are synthetic, and what they are.
+Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset);
+
+}  // namespace odobench

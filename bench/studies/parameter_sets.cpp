@@ -1,0 +1,135 @@
+#include "bench/studies/parameter_sets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "base/json_node.hpp"
+#include "base/names.hpp"
+#include "base/range.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/console/table_output.hpp"
+
+namespace odobench {
+namespace {
+
+using Json = nlohmann::json;
+
+ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& parameters,
+                         const std::string& where, std::string label) {
+  if (!object.is_object())
+    throw DataError(fmt::format("{}: found {}, expected an object of parameters", where, object.type_name()));
+  std::vector<std::string> names;
+  for (const ParameterInfo& p : parameters) names.push_back(p.name);
+  for (const auto& [key, value] : object.items()) {
+    if (key == "name" && value.is_string()) {
+      label = value.get<std::string>();
+    } else if (std::find(names.begin(), names.end(), key) == names.end()) {
+      throw DataError(fmt::format("{}: unknown key '{}'{}; expected {} .. {} and, if you like, a text 'name'",
+                                  where, key, did_you_mean(key, names), names.front(), names.back()));
+    }
+  }
+  Vector values(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto entry = object.find(names[i]);
+    if (entry == object.end()) throw DataError(fmt::format("{}: '{}' is missing", where, names[i]));
+    if (!entry->is_number() || !in_range(entry->get<double>()))
+      throw DataError(fmt::format("{}: '{}' is {}, expected a number of at most {:g} in size", where,
+                                  names[i], entry->dump(), kLargestNumber));
+    values[static_cast<Eigen::Index>(i)] = entry->get<double>();
+  }
+  return {label, values};
+}
+
+std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters, const std::string& file) {
+  const Json root = parse_json(read_file(file), file);
+  const std::string stem = std::filesystem::path(file).stem().string();
+  if (!root.is_array()) return {from_object(root, parameters, file, stem)};
+  std::vector<ParameterSet> sets;
+  for (std::size_t i = 0; i < root.size(); ++i)
+    sets.push_back(from_object(root[i], parameters, fmt::format("{}: entry {}", file, i + 1),
+                               fmt::format("{} {}", stem, i + 1)));
+  if (sets.empty())
+    throw DataError(fmt::format("{}: an empty array, expected at least one object of parameters", file));
+  return sets;
+}
+
+void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
+  std::string list;
+  const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = set.values[static_cast<Eigen::Index>(i)];
+    // Published values are rounded: 26.67 mm is one unit in the last place above 1.05 * 25.4 mm.
+    const double slack = 1e-9 * (parameters[i].upper - parameters[i].lower);
+    if (value < parameters[i].lower - slack || value > parameters[i].upper + slack)
+      list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
+                          parameters[i].lower, parameters[i].upper);
+  }
+  if (!list.empty()) warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
+}
+
+}  // namespace
+
+std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
+  std::vector<std::string> sources;
+  for (const std::string& list : lists) {
+    if (std::filesystem::exists(list)) {
+      sources.push_back(list);
+      continue;
+    }
+    for (std::string& item : comma_items(list)) sources.push_back(std::move(item));
+  }
+  return sources.empty() ? std::vector<std::string>{"nominal"} : sources;
+}
+
+ParameterNames parameter_names(const LoadedProblem& loaded) {
+  ParameterNames names{loaded.problem.parameters(), {}};
+  if (loaded.dataset) names.known = loaded.dataset->known_parameters;
+  return names;
+}
+
+std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source) {
+  const auto count = static_cast<Eigen::Index>(names.parameters.size());
+  std::vector<std::string> known = {"nominal"};
+  if (source == "nominal") {
+    Vector values(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      values[i] = names.parameters[static_cast<std::size_t>(i)].nominal;
+    return {{source, values}};
+  }
+  for (const NamedParameters& set : names.known) {
+    if (set.name == source) return {{source, Eigen::Map<const Vector>(set.values.data(), count)}};
+    known.push_back(set.name);
+  }
+  if (std::filesystem::exists(source)) return from_file(names.parameters, source);
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  throw std::invalid_argument(
+      fmt::format("--parameters={}: neither a file nor a name this data set knows{}; known: {}", source,
+                  did_you_mean(source, known), list));
+}
+
+void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets) {
+  const auto same = [&](const ParameterSet& s) { return s.label == set.label; };
+  if (std::any_of(sets.begin(), sets.end(), same))
+    throw std::invalid_argument(
+        fmt::format("--parameters: two sets are called '{}'; give them different names", set.label));
+  sets.push_back(std::move(set));
+}
+
+std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
+                                              const std::vector<std::string>& lists) {
+  const ParameterNames names = parameter_names(loaded);
+  std::vector<ParameterSet> sets;
+  for (const std::string& source : split_sources(lists))
+    for (ParameterSet& set : read_parameters(names, source)) add_parameter_set(std::move(set), sets);
+  for (const ParameterSet& set : sets) warn_outside(loaded, set);
+  return sets;
+}
+
+}  // namespace odobench

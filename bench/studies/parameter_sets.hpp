@@ -1,0 +1,40 @@
+// Parameter sets that users name: by what a data set knows, or in files of their own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/catalogue/problem_factory.hpp"
+
+namespace odobench {
+
+struct ParameterSet {
+  std::string label;
+  Vector values;  // in the problem's order, its units
+};
+
+// What entries of --parameters are about, and the sets that they may call by name.
+struct ParameterNames {
+  std::vector<ParameterInfo> parameters;
+  std::vector<NamedParameters> known;
+};
+ParameterNames parameter_names(const LoadedProblem& loaded);
+
+// One entry of --parameters: "nominal", a known name ("published:lm", "truth"), or a
+// JSON file holding {"a1": 0.1125, ..., "r4": 0.0254} in the problem's units or an array of such objects;
+// "name" is optional and becomes the label, else the file's stem with a number behind it in an array. Throws
+// std::invalid_argument on a name that is neither (lists the known ones), DataError naming file and key on a
+// file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
+std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source);
+
+// Throws std::invalid_argument when there is one of this label already.
+void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets);
+
+// Every entry of --parameters, comma lists taken apart; none: "nominal". Warns about parameters outside the box and
+// throws std::invalid_argument when two sets have one label.
+std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
+                                              const std::vector<std::string>& lists);
+// The entries of comma lists of such, except where a file has a comma in its name; "nominal" for none.
+std::vector<std::string> split_sources(const std::vector<std::string>& lists);
+
+}  // namespace odobench

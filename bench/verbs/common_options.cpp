@@ -1,0 +1,108 @@
+#include "bench/verbs/common_options.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "base/names.hpp"
+#include "base/text.hpp"
+#include "bench/catalogue/number_text.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/verbs/config_file.hpp"
+#include "solvers/options.hpp"
+
+namespace odobench {
+
+CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type, const std::string& help,
+                       const std::function<void(const std::string&)>& set) {
+  return app.add_option_function<std::string>(name, set, help)->type_name(type);
+}
+
+void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark) {
+  add_value(
+      app, "--kernel", "auto|avx512|avx2|baseline",
+      fmt::format("vector instructions of the cost evaluations; {} [$ODOBENCH_KERNEL, else auto: the widest "
+                  "of this processor]",
+                  remark),
+      [&kernel](const std::string& text) { kernel = instruction_set("--kernel", text); });
+}
+
+void add_budget(CLI::App& app, Budget& budget) {
+  add_value(app, "--max-evals", "N",
+            fmt::format("evaluations (costs and derivatives) of a run at most; 'none' lifts the limit [{}]",
+                        kDefaultMaxEvaluations),
+            [&budget](const std::string& text) {
+              budget.max_evaluations = text == "none" ? 0 : whole_number("--max-evals", text, 1);
+            });
+  add_value(
+      app, "--time-limit", "S", "seconds of a run at most [unlimited]",
+      [&budget](const std::string& text) { budget.max_seconds = finite_number("--time-limit", text, true); });
+  add_value(
+      app, "--target", "J", "stop a run once its cost is at most this",
+      [&budget](const std::string& text) { budget.target_cost = finite_number("--target", text, false); });
+}
+
+void add_format(CLI::App& app, std::string& format) {
+  app.add_option("--format", format, "of the tables [console]")->type_name("console|md|csv|json|latex");
+}
+
+void add_json(CLI::App& app, bool& json) {
+  app.add_flag("--json", json, "say on standard output, as JSON, what was written");
+}
+
+void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
+               const std::string& help) {
+  app.add_option_function<std::string>(
+         name,
+         [name, &value, lowest, highest](const std::string& text) {
+           value = static_cast<int>(whole_number(name, text, lowest, highest));
+         },
+         help)
+      ->type_name("N");
+}
+
+void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads) {
+  app.add_option_function<std::string>(
+         "--seed", [&seed](const std::string& text) { seed = seed_number("--seed", text); },
+         "of the noise [1]")
+      ->type_name("N");
+  add_count(app, "--threads", threads, 1, 1024, "threads; results do not depend on them [one per core]");
+}
+
+CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario) {
+  return app.add_option(name, scenario, "file or name; 'bench list scenarios' shows them")
+      ->required()
+      ->type_name("FILE|NAME");
+}
+
+void apply_config(CLI::App& app, const std::string& config) {
+  for (const ConfigEntry& entry : read_config(config)) {
+    if (entry.key == "json")
+      throw std::invalid_argument(
+          fmt::format("{}: unknown key 'json', write format = \"json\"", entry.where));
+    const bool no_key = entry.key == "config" || entry.key == "help" || entry.key == "version";
+    CLI::Option* option = no_key ? nullptr : app.get_option_no_throw("--" + entry.key);
+    if (option == nullptr)
+      throw std::invalid_argument(fmt::format("{}: unknown key '{}'{}", entry.where, shown(entry.key),
+                                              option_suggestion(app, entry.key)));
+    if (option->count() > 0) continue;
+    try {
+      for (const std::string& value : entry.values) option->add_result(value);
+      option->run_callback();
+    } catch (const std::exception& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", entry.where, error.what()));
+    }
+  }
+}
+
+std::string option_suggestion(const CLI::App& app, const std::string& typed) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  const auto begin = std::min(typed.find_first_not_of('-'), typed.size());
+  const std::string near = nearest_name(typed.substr(begin, typed.find('=') - begin), names);
+  if (near.empty() || near == typed) return {};
+  return fmt::format(", did you mean '{}{}'?", begin > 0 ? "--" : "", near);
+}
+
+}  // namespace odobench

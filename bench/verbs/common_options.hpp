@@ -1,0 +1,46 @@
+// Options that several verbs have.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "problems/instruction_set.hpp"
+#include "solvers/run.hpp"
+
+namespace odobench {
+
+// An option whose value `set` parses: CLI11's own messages do not say what was expected.
+CLI::Option* add_value(CLI::App& app, const std::string& name, const char* type, const std::string& help,
+                       const std::function<void(const std::string&)>& set);
+// Remarks for add_kernel.
+inline constexpr const char* kLastBits = "the last bits of a calibration depend on it";
+inline constexpr const char* kSpeedOnly = "it decides the speed of the searches, never what they find";
+inline constexpr const char* kNamedOnly = "no result of this verb depends on it";
+
+// --kernel. `remark`: what the verb's results have to do with it.
+void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark);
+// --max-evals, --time-limit, --target.
+void add_budget(CLI::App& app, Budget& budget);
+
+// --format of the tables that the verb prints.
+void add_format(CLI::App& app, std::string& format);
+// Of verbs that write files instead of printing tables.
+void add_json(CLI::App& app, bool& json);
+// A whole number between two limits.
+void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
+               const std::string& help);
+// --seed and --threads of simulated drives.
+void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads);
+CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario);
+
+// Sets what the configuration file says and the command line, parsed before, does not. Throws
+// std::invalid_argument "file:line: ..." on unknown keys and bad values.
+void apply_config(CLI::App& app, const std::string& config);
+
+// ", did you mean '--x'?" or "" for an option that `app` does not have; "--x=1" counts as "--x".
+std::string option_suggestion(const CLI::App& app, const std::string& typed);
+
+}  // namespace odobench

@@ -1,0 +1,48 @@
+#include "bench/verbs/demo.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/catalogue/number_text.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/verbs/common_options.hpp"
+#include "bench/verbs/written_files.hpp"
+#include "problems/simulation/demo_generator.hpp"
+#include "solvers/options.hpp"
+
+namespace odobench {
+namespace {
+
+struct DemoOptions {
+  std::string out;
+  std::optional<std::uint64_t> seed;  // of the noise; none: that of the demo set in the repository
+  bool overwrite = false;
+  bool json = false;  // say on standard output what was written
+};
+
+void add_options(CLI::App& app, DemoOptions& o) {
+  app.add_option("--out", o.out, "folder for set.json")->required()->type_name("DIR");
+  app.add_option_function<std::string>(
+         "--seed", [&o](const std::string& text) { o.seed = seed_number("--seed", text); },
+         "of its noise [that of the set in the repository]")
+      ->type_name("N");
+  app.add_flag("--overwrite", o.overwrite, "replace a data set that is there");
+  add_json(app, o.json);
+}
+
+ExitCode demo_command(const DemoOptions& options) {
+  const std::filesystem::path set = std::filesystem::path(options.out) / "set.json";
+  require_writable(set, existing_files(options.overwrite));
+  save_announced(make_demo_dataset(options.seed.value_or(kDemoSeed)), set, options.overwrite, options.json);
+  return ExitCode::Success;
+}
+
+}  // namespace
+
+VerbAction add_demo(CLI::App& app) {
+  return verb_action<DemoOptions>(app, add_options, demo_command);
+}
+
+}  // namespace odobench

@@ -1,0 +1,222 @@
+#include "bench/verbs/list.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "base/names.hpp"
+#include "bench/catalogue/locations.hpp"
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/console/table_output.hpp"
+#include "bench/studies/scenario_tables.hpp"
+#include "bench/verbs/common_options.hpp"
+#include "datasets/dataset.hpp"
+#include "problems/classic/classic_problems.hpp"
+#include "solvers/options.hpp"
+#include "solvers/registry.hpp"
+
+namespace odobench {
+namespace {
+
+struct ListOptions {
+  std::string what;  // solvers | problems | data | scenarios
+  std::string data;  // with `data`, `scenarios`: the one to describe; empty: known places
+  std::string format = "console";
+};
+
+void add_options(CLI::App& app, ListOptions& o) {
+  app.add_option("what", o.what, "solvers, problems, data or scenarios")->required();
+  app.add_option("set", o.data, "with data or scenarios: the one to describe [known places]");
+  add_format(app, o.format);
+}
+
+std::vector<Table> solver_tables() {
+  Table solvers{
+      "solvers", "Solvers", {text_column("solver"), text_column("kind"), text_column("summary")}, {}, {}};
+  Table options{"options",
+                "Options, as in --solver=NAME[option=value,...]",
+                {text_column("solver"), text_column("option"), text_column("default"), text_column("allowed"),
+                 text_column("help")},
+                {},
+                {}};
+  for (const SolverEntry& entry : solver_registry()) {
+    solvers.rows.push_back({text_cell(entry.name),
+                            text_cell(entry.stochastic ? "stochastic" : "deterministic"),
+                            text_cell(entry.summary)});
+    for (const OptionDescription& o : entry.options())
+      options.rows.push_back({text_cell(entry.name), text_cell(o.name), text_cell(o.value),
+                              text_cell(o.allowed), text_cell(o.help)});
+  }
+  return {solvers, options};
+}
+
+Table problem_table(const std::string& id, const std::string& title, const std::string& note) {
+  return {id,
+          title,
+          {text_column("problem"), number_column("dimension", "usual dimension"), text_column("dimensions"),
+           number_column("residuals"), text_column("derivatives"), text_column("optimum", "lowest known J"),
+           text_column("source")},
+          {},
+          {note}};
+}
+
+std::vector<Cell> problem_row(const ClassicEntry& entry) {
+  const Problem problem = make_classic_problem(entry.name);
+  const char* derivatives = problem.has_residuals()  ? "residuals, Jacobian"
+                            : problem.has_gradient() ? "gradient"
+                                                     : "none";
+  return {text_cell(entry.name),
+          count_cell(entry.dimension),
+          text_cell(entry.dimensions.text()),
+          entry.residuals > 0 ? count_cell(entry.residuals) : Cell{},
+          text_cell(derivatives),
+          text_cell(entry.best_cost ? fmt::format("{:.10g}", *entry.best_cost) : ""),
+          text_cell(entry.source)};
+}
+
+// One table per family.
+std::vector<Table> problem_tables() {
+  std::vector<Table> tables{
+      problem_table("problems.calibration", "Calibration, as in --data=set.json",
+                    "Parameters, box and recordings come from the set."),
+      problem_table("problems.classic", "Test functions, as in --problem=NAME --dimension=N",
+                    "Many at once: --problem=rosenbrock,powell or --problem='*'."),
+      problem_table("problems.nist", "Certified regression problems (NIST StRD): nist:NAME/START",
+                    "All of them: --problem='nist:*'."),
+      problem_table("problems.mgh", "More, Garbow, Hillstrom (1981): mgh:NAME, mgh:NAME/10, mgh:NAME/100",
+                    "All of them: --problem='mgh:*'; from the standard starts only: 'mgh:*[!0]'.")};
+  const std::string count = std::to_string(kCalibrationParameters);
+  tables[0].rows.push_back({text_cell("calibration"), count_cell(static_cast<double>(kCalibrationParameters)),
+                            text_cell(count), Cell{}, text_cell("residuals, Jacobian, normal equations"),
+                            Cell{}, Cell{}});
+  for (const ClassicEntry& entry : classic_catalogue())
+    tables[entry.family == "classic" ? 1 : entry.family == "nist" ? 2 : 3].rows.push_back(problem_row(entry));
+  return tables;
+}
+
+std::vector<Table> known_data_tables() {
+  Table table{"data",
+              "Known data sets",
+              {text_column("name"), text_column("file")},
+              {},
+              {"'bench list data FILE' describes a set; 'bench import vitko2024 --from=DIR --out=set.json' "
+               "makes one of raw files."}};
+  for (const auto& [name, path] : known_sets())
+    table.rows.push_back({text_cell(name), text_cell(path.string())});
+  return {table};
+}
+
+double seconds_of(const Recording& r) {
+  return r.size() < 2 ? 0.0 : static_cast<double>(r.time_us.back() - r.time_us.front()) * 1e-6;
+}
+
+Table overview_table(const Dataset& set, const std::string& path) {
+  Table table{
+      "set", fmt::format("Data set {}", set.name), {text_column("item"), text_column("value")}, {}, {}};
+  const auto row = [&](const char* item, const std::string& value) {
+    if (!value.empty()) table.rows.push_back({text_cell(item), text_cell(value)});
+  };
+  std::size_t samples = 0;
+  double seconds = 0;
+  for (const Recording& r : set.recordings) {
+    samples += r.size();
+    seconds += seconds_of(r);
+  }
+  row("file", path);
+  row("description", set.description);
+  row("robot", set.robot.name);
+  row("kinematics", set.robot.kinematics);
+  row("recordings", fmt::format("{} of {} trajectories, {} samples, {:.1f} s", set.recordings.size(),
+                                set.trajectories.size(), samples, seconds));
+  row("source", set.provenance.source);
+  row("licence", set.provenance.licence);
+  row("made by", set.provenance.made_by);
+  if (!set.provenance.files.empty())
+    row("source files", fmt::format("{}, each with its SHA-256 in the set", set.provenance.files.size()));
+  table.notes = set.notes;
+  return table;
+}
+
+Table parameter_table(const Dataset& set) {
+  Table table{"parameters",
+              "Robot parameters",
+              {text_column("parameter"), text_column("unit"), number_column("nominal"),
+               number_column("lower"), number_column("upper")},
+              {},
+              {}};
+  for (std::size_t k = 0; k < set.known_parameters.size(); ++k) {
+    const NamedParameters& known = set.known_parameters[k];
+    table.columns.push_back(number_column(fmt::format("known_{}", k + 1), known.name));
+    if (!known.description.empty())
+      table.notes.push_back(fmt::format("{}: {}", known.name, known.description));
+  }
+  for (std::size_t i = 0; i < set.robot.parameters.size(); ++i) {
+    const RobotParameter& p = set.robot.parameters[i];
+    table.rows.push_back({text_cell(p.name), text_cell(p.unit), significant_cell(p.nominal, 7),
+                          significant_cell(p.lower, 7), significant_cell(p.upper, 7)});
+    for (const NamedParameters& known : set.known_parameters)
+      table.rows.back().push_back(significant_cell(known.values.at(i), 7));
+  }
+  return table;
+}
+
+std::vector<Table> set_tables(const std::string& path) {
+  const Dataset set = load_dataset(path);
+  Table trajectories{"trajectories",
+                     "Trajectories",
+                     {text_column("trajectory"), text_column("description"), number_column("recordings"),
+                      number_column("samples"), number_column("duration", "duration", "s")},
+                     {},
+                     {}};
+  for (const Trajectory& t : set.trajectories) {
+    double count = 0, samples = 0, seconds = 0;
+    for (const Recording& r : set.recordings) {
+      if (r.trajectory != t.name) continue;
+      count += 1;
+      samples += static_cast<double>(r.size());
+      seconds += seconds_of(r);
+    }
+    trajectories.rows.push_back({text_cell(t.name), text_cell(t.description), count_cell(count),
+                                 count_cell(samples), fixed_cell(seconds, 3)});
+  }
+  Table recordings{"recordings",
+                   "Recordings",
+                   {text_column("recording"), text_column("trajectory"), number_column("repetition"),
+                    number_column("samples"), number_column("duration", "duration", "s")},
+                   {},
+                   {}};
+  for (const Recording& r : set.recordings)
+    recordings.rows.push_back({text_cell(r.id), text_cell(r.trajectory), count_cell(r.repetition),
+                               count_cell(static_cast<double>(r.size())), fixed_cell(seconds_of(r), 3)});
+  return {overview_table(set, path), parameter_table(set), trajectories, recordings};
+}
+
+ExitCode list_command(const ListOptions& options) {
+  const Format format = parse_format(options.format);
+  const std::vector<std::string> known = {"solvers", "problems", "data", "scenarios"};
+  if (!options.data.empty() && options.what != "data" && options.what != "scenarios")
+    throw std::invalid_argument(
+        fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
+  if (options.what == "solvers") {
+    print_tables(solver_tables(), format);
+  } else if (options.what == "problems") {
+    print_tables(problem_tables(), format);
+  } else if (options.what == "data") {
+    print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
+  } else if (options.what == "scenarios") {
+    print_tables(scenario_tables(options.data), format);
+  } else {
+    throw std::invalid_argument(
+        fmt::format("bench list '{}'{}: expected solvers, problems, data or scenarios", options.what,
+                    did_you_mean(options.what, known)));
+  }
+  return ExitCode::Success;
+}
+
+}  // namespace
+
+VerbAction add_list(CLI::App& app) {
+  return verb_action<ListOptions>(app, add_options, list_command);
+}
+
+}  // namespace odobench

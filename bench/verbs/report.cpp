@@ -1,0 +1,115 @@
+#include "bench/verbs/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "base/files.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/console/interrupt.hpp"
+#include "bench/console/table_output.hpp"
+#include "bench/studies/figure_files.hpp"
+#include "bench/studies/records.hpp"
+#include "bench/verbs/common_options.hpp"
+#include "bench/verbs/written_files.hpp"
+#include "reports/page/report_document.hpp"
+#include "reports/page/web_assets.hpp"
+
+namespace odobench {
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> runs;
+  std::string out;      // HTML page, "-" for standard output; empty: none
+  std::string figures;  // folder for SVG files; empty: none
+  std::string title;    // of the page; empty: what was run
+  bool overwrite = false;
+  std::string format = "console";
+};
+
+void add_options(CLI::App& app, ReportOptions& o) {
+  app.add_option("--out", o.out, "write one self-contained page that needs no network; - for standard output")
+      ->type_name("FILE.HTML");
+  app.add_option("--figures", o.figures, "write every figure as an SVG file into this folder")
+      ->type_name("DIR");
+  app.add_option("--title", o.title, "of the page [what was run]")->type_name("TEXT");
+  app.add_flag("--overwrite", o.overwrite, "replace the page or the figures that are there");
+  app.add_option("runs", o.runs, "folders with runs.jsonl, or .jsonl files")->required();
+  add_format(app, o.format);
+}
+
+namespace fs = std::filesystem;
+
+ReportInput report_input(const ReportOptions& options, const std::vector<RunRecord>& records) {
+  ReportInput input;
+  input.records = records;
+  input.title = options.title;
+  input.notes = notes_of_best(records);
+  for (const std::string& run : options.runs) {
+    const fs::path folder = fs::is_directory(run) ? fs::path(run) : fs::path(run).parent_path();
+    std::optional<TrackSet> tracks = read_tracks(folder);
+    // A .jsonl file may lie beside the tracks of another run.
+    const auto belongs = [&](const RunRecord& r) {
+      return r.problem == tracks->problem && r.dataset == tracks->dataset &&
+             r.dataset_sha256 == tracks->dataset_sha256;
+    };
+    if (tracks && std::any_of(records.begin(), records.end(), belongs))
+      input.tracks.push_back(std::move(*tracks));
+  }
+  bool drives = false;
+  for (const RunRecord& r : records) drives = drives || !r.errors.empty();
+  if (drives && input.tracks.empty())
+    input.absent.push_back(
+        "The run directory holds no tracks, so there are no figures of the driven paths: they are stored "
+        "when a run with "
+        "--out ends.");
+  return input;
+}
+
+// A name that is no other label's: "pso[swarm=60]" -> "pso-swarm-60-".
+
+ExitCode report_command(const ReportOptions& options) {
+  const Format format = parse_format(options.format);
+  const std::vector<RunRecord> records = read_all_records(options.runs);
+  if (options.out.empty() && options.figures.empty()) {
+    print_tables(
+        record_tables(records, notes_of_best(records), format == Format::Json || format == Format::Csv),
+        format);
+    return ExitCode::Success;
+  }
+  const Existing existing = existing_files(options.overwrite);
+  refuse_existing("--out", options.out, options.overwrite);
+  if (options.out == "-" && format == Format::Json)
+    throw std::invalid_argument("--out=-: standard output takes the page, not JSON as well");
+  const Document document = make_report(report_input(options, records));
+  std::vector<fs::path> written, drawn;
+  // First, since it can still be interrupted.
+  if (!options.figures.empty()) drawn = write_figures(document, options.figures, existing);
+  if (!options.out.empty()) {
+    const std::string page = render_html(document);
+    InterruptGuard::remember();
+    write_result(options.out, page, existing);
+    if (options.out != "-") written.emplace_back(options.out);
+    note(has_chart_library()
+             ? fmt::format("{}: {} figures, {} sections", options.out, figures(document).size(),
+                           document.sections.size())
+             : fmt::format("{}: tables without charts, since {}", options.out, why_no_charts()));
+  }
+  if (!options.figures.empty()) {
+    written.insert(written.end(), drawn.begin(), drawn.end());
+    note(fmt::format("{}: {} figures", options.figures, figures(document).size()));
+  }
+  if (format == Format::Json) print_tables({written_table(written)}, format);
+  return ExitCode::Success;
+}
+
+}  // namespace
+
+VerbAction add_report(CLI::App& app) {
+  return verb_action<ReportOptions>(app, add_options, report_command);
+}
+
+}  // namespace odobench
