@@ -7,7 +7,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "problems/fusion/fusion_engine.hpp"
+#include "problems/fusion/fusion_states.hpp"
+#include "problems/fusion/robot_model.hpp"
+#include "problems/kalman/triangular.hpp"
 
 namespace odobench {
 namespace {
@@ -100,14 +102,10 @@ FusionResult fuse(const Recording& recording, const ConstVectorRef& z, std::span
                       "increasing stamps",
                       recording.id, recording.time_us[k], k + 1, recording.time_us[k - 1]));
   for (const SensorStream& s : sensors) check_data(s, recording);
-  // Two choices instead of eight, to keep compilation short: an unused bias or
-  // scale has no variance and stays 0.
   const bool copy = std::any_of(sensors.begin(), sensors.end(),
                                 [](const SensorStream& s) { return s.kind == SensorKind::RelativePose; });
-  if (copy || options.gyro_bias || options.odometry_scale)
-    return FusionEngine<RobotModel<true, true, true>>(recording, z, sensors, options, keep_innovations).run();
-  return FusionEngine<RobotModel<false, false, false>>(recording, z, sensors, options, keep_innovations)
-      .run();
+  const bool augmented = copy || options.gyro_bias || options.odometry_scale;
+  return (augmented ? fuse_augmented : fuse_plain)(recording, z, sensors, options, keep_innovations);
 }
 
 TrackErrors track_errors(const Recording& recording, const PoseTrack& track,
