@@ -120,7 +120,8 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// Who holds a lock, as the kernel lists it: "process 123", where it can be told apart, else "another process".
+// Who holds a lock, as the kernel lists it: "process 123", where it can be told apart, else "another
+// process".
 std::string holder(int descriptor) {
   struct ::stat status {};
   if (::fstat(descriptor, &status) != 0) return "another process";

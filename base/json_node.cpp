@@ -26,7 +26,8 @@ std::string brief(const json& value) {
   return shown(value.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-// The word NaN, Infinity or -Infinity, which other programs write though JSON has none, whose reading ended at `read`; else "".
+// The word NaN, Infinity or -Infinity, which other programs write though JSON has none, whose reading ended
+// at `read`; else "".
 std::string_view not_a_number_at(std::string_view text, std::size_t read) {
   std::size_t begin = std::min(read, text.size());
   const auto part = [](char c) {
@@ -87,9 +88,9 @@ std::string broken(const json::parse_error& e, std::string_view text, const std:
   return fmt::format("{}:{}: broken JSON: {}", file, line, what);
 }
 
-// Builds the document from the library's events, refuses a key that an object has already, and knows where the reading is.
-// Not the library's own parser with a callback: that one looks through all elements of an array after every object in it, which is
-// quadratic in the number of recordings.
+// Builds the document from the library's events, refuses a key that an object has already, and knows where
+// the reading is. Not the library's own parser with a callback: that one looks through all elements of an
+// array after every object in it, which is quadratic in the number of recordings.
 class Reading {
  public:
   Reading(const std::string& file, json& root) : file_(file), root_(root) {}

@@ -14,9 +14,9 @@
 
 namespace odobench {
 
-// The document in a text whose first line is number `line` of the file. DataError "file:line: broken JSON: ...", as is a key that
-// occurs twice in one object; NaN, Infinity and numbers beyond the range of a double, which other programs write, are
-// "file:line: /path/to/value: found ..., expected ...".
+// The document in a text whose first line is number `line` of the file. DataError "file:line: broken JSON:
+// ...", as is a key that occurs twice in one object; NaN, Infinity and numbers beyond the range of a double,
+// which other programs write, are "file:line: /path/to/value: found ..., expected ...".
 nlohmann::json parse_json(std::string_view text, const std::string& file, std::size_t line = 1);
 
 // A value inside a parsed file. Cheap to copy; copies share the document. Every mismatch is a DataError

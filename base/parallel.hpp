@@ -12,9 +12,9 @@
 
 namespace odobench {
 
-// Where threads meet, in the language's own terms: what one did before it arrived is seen by all that arrive later. A scheduler in
-// a library of its own orders its threads just as well, but tools that look for races cannot see into it. Costs an atomic
-// addition.
+// Where threads meet, in the language's own terms: what one did before it arrived is seen by all that arrive
+// later. A scheduler in a library of its own orders its threads just as well, but tools that look for races
+// cannot see into it. Costs an atomic addition.
 class Meeting {
  public:
   void arrive() { arrived_.fetch_add(1, std::memory_order_acq_rel); }
@@ -23,9 +23,9 @@ class Meeting {
   std::atomic<long> arrived_{0};
 };
 
-// work(0) ... work(count - 1), each once, on `threads` threads (0: as many as the machine has). After an exception no
-// further index begins; that of the lowest index is passed on. A stop that is asked for between two indices is such an exception
-// (Interruption).
+// work(0) ... work(count - 1), each once, on `threads` threads (0: as many as the machine has). After an
+// exception no further index begins; that of the lowest index is passed on. A stop that is asked for between
+// two indices is such an exception (Interruption).
 template <class Work>
 void parallel_for(std::size_t count, int threads, const Work& work, const Stop& stop = {}) {
   std::size_t most = threads > 0 ? static_cast<std::size_t>(threads) : std::thread::hardware_concurrency();

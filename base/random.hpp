@@ -1,5 +1,6 @@
-// Random numbers that are the same on every platform and thread count: engines are passed in, seeds are derived by
-// hash, distributions are Boost's (whose algorithms, unlike those of <random>, do not depend on the standard library).
+// Random numbers that are the same on every platform and thread count: engines are passed in, seeds are
+// derived by hash, distributions are Boost's (whose algorithms, unlike those of <random>, do not depend on
+// the standard library).
 #pragma once
 
 #include <boost/random/mersenne_twister.hpp>
@@ -34,8 +35,8 @@ class Random {
   boost::random::normal_distribution<double> normal_;
 };
 
-// Hash (FNV-1a over the parts with separators, then the splitmix64 finaliser) of a base seed and the names of a table
-// cell, so that any cell can be rerun alone: derive_seed(base, {problem, dataset, solver, "3"}).
+// Hash (FNV-1a over the parts with separators, then the splitmix64 finaliser) of a base seed and the names of
+// a table cell, so that any cell can be rerun alone: derive_seed(base, {problem, dataset, solver, "3"}).
 std::uint64_t derive_seed(std::uint64_t base, std::initializer_list<std::string_view> parts);
 
 // The splitmix64 finaliser: neighbouring seeds and indices get unrelated engines.

@@ -12,8 +12,8 @@ class Interruption : public std::runtime_error {
   Interruption() : std::runtime_error("interrupted") {}
 };
 
-// A flag that somebody else sets, e.g. a signal handler; without one never. Copies watch the same flag, which must outlive
-// them. Cheap enough to be asked in every turn of a loop.
+// A flag that somebody else sets, e.g. a signal handler; without one never. Copies watch the same flag, which
+// must outlive them. Cheap enough to be asked in every turn of a loop.
 class Stop {
  public:
   Stop() = default;

@@ -80,8 +80,8 @@ constexpr std::array<Verb, 17> kVerbs{{
     {"verify", "judge parameter sets on new drives that are steered by them", add_verify},
 }};
 
-// Every verb has --json. Those with tables take it for --format=json, so that a configuration file does not overrule it; the others
-// have a flag of their own (add_json).
+// Every verb has --json. Those with tables take it for --format=json, so that a configuration file does not
+// overrule it; the others have a flag of their own (add_json).
 void offer_json(CLI::App& verb) {
   if (verb.get_option_no_throw("--json") == nullptr)
     verb.add_flag("--json")->description("the same as --format=json");
@@ -110,7 +110,8 @@ void refuse_leftovers(const CLI::App& app) {
       fmt::format("unexpected argument '{}'; see 'bench {} --help'", left.front(), app.get_name()));
 }
 
-// Puts the default verb in front and refuses an unknown one. "" when the program itself is asked for its help or version.
+// Puts the default verb in front and refuses an unknown one. "" when the program itself is asked for its help
+// or version.
 std::string complete_verb(std::vector<std::string>& words) {
   if (!words.empty() && (words[0] == "-h" || words[0] == "--help" || words[0] == "--version")) return "";
   if (words.empty() || words[0].rfind('-', 0) == 0) words.insert(words.begin(), kVerbs.front().name);

@@ -73,13 +73,13 @@ struct Dataset {
 Dataset load_dataset(const std::filesystem::path& set_json);
 
 // Writes set.json and, unless `inline_recordings`, one recording file each in the folder "<stem>_recordings"
-// beside it. Everything is written to temporary names and renamed when complete. Returns what was written. Throws DataError
-// when it cannot be, std::invalid_argument when a file is there that is to be kept.
+// beside it. Everything is written to temporary names and renamed when complete. Returns what was written.
+// Throws DataError when it cannot be, std::invalid_argument when a file is there that is to be kept.
 std::vector<std::filesystem::path> save_dataset(const Dataset& dataset, const std::filesystem::path& set_json,
                                                 bool inline_recordings = false,
                                                 Existing existing = Existing::Replace);
-// The same files as a part of something larger: added, set.json last, but not committed. Throws Interruption when a stop is
-// asked for before the last recording.
+// The same files as a part of something larger: added, set.json last, but not committed. Throws Interruption
+// when a stop is asked for before the last recording.
 void add_dataset(const Dataset& dataset, const std::filesystem::path& set_json, FileTransaction& files,
                  bool inline_recordings = false, const Stop& stop = {});
 

@@ -39,17 +39,17 @@ struct SearchResult {
   std::int64_t evaluations = 0;  // candidates whose cost was looked at
 };
 
-// A search made for given blocks Q_B, run for one linear term after the other: the sliding filter's inner loop.
-// Vectors hold the blocks one after the other, x in the order of `g`. Not for two threads at once: it owns its
-// scratch memory.
+// A search made for given blocks Q_B, run for one linear term after the other: the sliding filter's inner
+// loop. Vectors hold the blocks one after the other, x in the order of `g`. Not for two threads at once: it
+// owns its scratch memory.
 class BlockSearch {
  public:
   virtual ~BlockSearch() = default;
   virtual SearchResult minimise(std::span<const double> g, std::span<double> x) = 0;
 };
 
-// A point on a lattice whose cost is such a sum; a change costs O(1), a move O(size of its block). `quadratic`
-// outlives the point.
+// A point on a lattice whose cost is such a sum; a change costs O(1), a move O(size of its block).
+// `quadratic` outlives the point.
 std::unique_ptr<LatticePoint> block_quadratic_point(const BlockQuadratic& quadratic,
                                                     const Eigen::Ref<const Eigen::VectorXd>& x);
 

@@ -1,11 +1,13 @@
-// A lattice of admissible values: what a problem offers whose parameters, or a search over them, are discrete.
+// A lattice of admissible values: what a problem offers whose parameters, or a search over them, are
+// discrete.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace odobench {
 
-// A point on the lattice that walks by changing one parameter at a time and knows at O(1) what a change would cost.
+// A point on the lattice that walks by changing one parameter at a time and knows at O(1) what a change would
+// cost.
 class LatticePoint {
  public:
   virtual ~LatticePoint() = default;

@@ -4,11 +4,12 @@
 //     std::string name() const;
 //     const std::vector<ParameterInfo>& parameters() const;
 //     double cost(const ConstVectorRef& x) const;
-// and any of the optional ones below, which the handle detects by concepts and otherwise derives where that is
-// exact (gradient = 2 J'r, a batch as a loop of costs) or reports as absent.
+// and any of the optional ones below, which the handle detects by concepts and otherwise derives where that
+// is exact (gradient = 2 J'r, a batch as a loop of costs) or reports as absent.
 //
-// x is in the units of the parameters, n = parameters().size(). A cost with residuals is J(x) = r(x)'r(x), without
-// the factor 1/2. Models are immutable once built: every member is const and may be called from several threads.
+// x is in the units of the parameters, n = parameters().size(). A cost with residuals is J(x) = r(x)'r(x),
+// without the factor 1/2. Models are immutable once built: every member is const and may be called from
+// several threads.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,8 +41,8 @@ struct ParameterInfo {
   double upper = 0;
 };
 
-// Throws std::invalid_argument naming the parameter, the values and the violated relation unless all are finite and
-// lower <= nominal <= upper, the list is not empty and the names are unique.
+// Throws std::invalid_argument naming the parameter, the values and the violated relation unless all are
+// finite and lower <= nominal <= upper, the list is not empty and the names are unique.
 void validate(const std::vector<ParameterInfo>& parameters);
 
 // J(x) = r'r, gradient half J'r (n) and Gauss-Newton matrix J'J (n x n, both triangles filled).
@@ -99,7 +100,8 @@ template <class M>
 concept HasStart = requires(const M& m) {
   { m.start() } -> std::convertible_to<Vector>;
 };
-// Admissible values of every parameter, each list ascending and inside the box, and a point that walks on them.
+// Admissible values of every parameter, each list ascending and inside the box, and a point that walks on
+// them.
 template <class M>
 concept HasLattice = requires(const M& m, const ConstVectorRef& x) {
   { m.lattice_levels() } -> std::convertible_to<const std::vector<Vector>&>;
@@ -115,21 +117,22 @@ template <class M>
 concept HasRoundingFloor = requires(const M& m, const ConstVectorRef& x) {
   { m.rounding_floor(x) } -> std::convertible_to<double>;
 };
-// Lowest cost in the box, where it is known: from theory, certified, or the lowest that anyone has found (the model says
-// which). Empty where a model knows it for some of its instances only.
+// Lowest cost in the box, where it is known: from theory, certified, or the lowest that anyone has found (the
+// model says which). Empty where a model knows it for some of its instances only.
 template <class M>
 concept HasKnownOptimum = requires(const M& m) {
   { m.known_optimum() } -> std::convertible_to<std::optional<double>>;
 };
-// Points in the box where the known optimum is attained, as far as they are known (rounded to the digits they were
-// stated with): the certified or published one first, then those of the same cost by a symmetry of the model.
+// Points in the box where the known optimum is attained, as far as they are known (rounded to the digits they
+// were stated with): the certified or published one first, then those of the same cost by a symmetry of the
+// model.
 template <class M>
 concept HasKnownMinimisers = requires(const M& m) {
   { m.known_minimisers() } -> std::convertible_to<std::vector<Vector>>;
 };
 
-// Value handle around a shared, immutable model; counts the evaluations made through it. Copying is cheap and the
-// copy starts with zeroed counts, so every run owns its own. One handle is not to be used from
+// Value handle around a shared, immutable model; counts the evaluations made through it. Copying is cheap and
+// the copy starts with zeroed counts, so every run owns its own. One handle is not to be used from
 // two threads at once, except for batch_cost.
 class Problem {
  public:

@@ -7,6 +7,8 @@
 #   headers    begin with `#pragma once` (after comments)
 #   flags      no -march=native, no -ffast-math or its parts: results must not depend on the machine that built them
 #   length     no source file above 450 lines
+#   comments   at most 110 columns
+#   functions  at most 60 lines without comments, of what begins in the first column (tests, kernels: no limit)
 #   format     clang-format 14 (Debian 12's) has nothing to change; skipped, and said so, where it is not installed
 set -euo pipefail
 export LC_ALL=C.UTF-8
@@ -122,6 +124,26 @@ check_length() {
   awk -v most=450 'FNR == most + 1 { printf "%s:%d: longer than %d lines\n", FILENAME, FNR, most }' "${sources[@]}"
 }
 
+check_comments() {
+  awk 'length($0) > 110 && /^ *\/\// { printf "%s:%d: a comment of %d columns, expected at most 110\n", FILENAME, FNR, length($0) }' "${sources[@]}"
+}
+
+check_functions() {
+  awk '
+    FNR == 1 { begin = 0 }
+    begin && (/^ *\/\// || /^$/) { comments++ }
+    # A kernel is one loop whose variables stay in registers.
+    FILENAME ~ /^tests\/|_kernel_impl|\/kernel_impl/ { nextfile }
+    /^[^ \t\/#}].*\{$/ && !/^(namespace|struct|class|enum|union|extern|constexpr|const |static const )/ { begin = FNR; comments = 0 }
+    /^[^ \t\/#}].*[,(]$/ && !/^(namespace|struct|class|enum|union|extern|constexpr|const |static const )/ { if (!begin) { begin = FNR; comments = 0 } }
+    /^[^ \t\/#}].*;$/ { begin = 0 }
+    /^}/ {
+      lines = FNR - begin + 1 - comments
+      if (begin && lines > 60) printf "%s:%d: a function of %d lines, expected at most 60\n", FILENAME, begin, lines
+      begin = 0
+    }' "${sources[@]}"
+}
+
 formatter() {
   local candidate
   for candidate in clang-format-14 clang-format; do
@@ -150,6 +172,8 @@ report includes "$(check_includes)"
 report headers "$(check_headers)"
 report flags "$(check_flags)"
 report length "$(check_length)"
+report comments "$(check_comments)"
+report functions "$(check_functions)"
 format=$(formatter)
 if [[ -n $format ]]; then
   report format "$(check_format)"

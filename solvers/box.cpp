@@ -7,8 +7,9 @@
 namespace odobench {
 namespace {
 
-// Points are measured from the centre in the inner half of the box, so that small numbers in a wide box keep their
-// digits, and from the nearer bound in the outer half, so that points next to a bound keep their distance to it.
+// Points are measured from the centre in the inner half of the box, so that small numbers in a wide box keep
+// their digits, and from the nearer bound in the outer half, so that points next to a bound keep their
+// distance to it.
 constexpr double kInner = 0.5;
 
 }  // namespace

@@ -1,6 +1,7 @@
-// The parameter box as the unit cube that every solver sees: u in [-1, 1]^m, one coordinate per parameter that is
-// not held fixed (lower < upper), x = centre + half * u. u = -1, 0 and 1 map to the bounds and the centre exactly, small
-// distances from any of the three keep their digits, and every x that leaves here lies in the box to the last bit.
+// The parameter box as the unit cube that every solver sees: u in [-1, 1]^m, one coordinate per parameter
+// that is not held fixed (lower < upper), x = centre + half * u. u = -1, 0 and 1 map to the bounds and the
+// centre exactly, small distances from any of the three keep their digits, and every x that leaves here lies
+// in the box to the last bit.
 #pragma once
 
 #include "problems/problem.hpp"
@@ -23,7 +24,8 @@ class Box {
   NormalEquations to_unit(const NormalEquations& e) const;
   // Free coordinate i is this index in x.
   Eigen::Index parameter_index(Eigen::Index i) const { return free_[static_cast<std::size_t>(i)]; }
-  // How far apart representable neighbours of the point are, in unit coordinates (m): by the rounding of x and of u.
+  // How far apart representable neighbours of the point are, in unit coordinates (m): by the rounding of x
+  // and of u.
   Vector resolution(const ConstVectorRef& u) const;
   bool contains(const ConstVectorRef& x) const;
 

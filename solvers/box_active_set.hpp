@@ -24,8 +24,8 @@ inline Indices free_of(const std::vector<Held>& held) {
 //     Vector gradient(d) const              of the model at d (m)
 //     Vector free_step(free, d, g) const    from d to the minimum over the free coordinates, in their order
 //     double size(i) const                  square root of the curvature along coordinate i
-// Returns d with lower <= d <= upper whose multipliers have the right signs; at most 50 m changes of the set. `held`:
-// the set to begin with; d starts at 0 in free coordinates.
+// Returns d with lower <= d <= upper whose multipliers have the right signs; at most 50 m changes of the set.
+// `held`: the set to begin with; d starts at 0 in free coordinates.
 template <class Model>
 Vector box_active_set(const Model& model, const Vector& lower, const Vector& upper, std::vector<Held> held) {
   const Eigen::Index m = lower.size();
@@ -82,9 +82,9 @@ inline std::vector<Held> held_at_start(const Vector& g, const Vector& lower, con
   return held;
 }
 
-// Block principal pivoting (Judice, Pires 1994): all coordinates on the wrong side change at once while their number falls
-// and a few times more, else only the last of them (Murty's rule, which ends). Returns the set it ended with, right or
-// not: the active-set method goes on from there.
+// Block principal pivoting (Judice, Pires 1994): all coordinates on the wrong side change at once while their
+// number falls and a few times more, else only the last of them (Murty's rule, which ends). Returns the set
+// it ended with, right or not: the active-set method goes on from there.
 template <class Model>
 std::vector<Held> pivoted_set(const Model& model, const Vector& lower, const Vector& upper,
                               std::vector<Held> held) {
@@ -127,8 +127,8 @@ std::vector<Held> pivoted_set(const Model& model, const Vector& lower, const Vec
   return held;
 }
 
-// The minimum of the model on the box; g is its gradient at d = 0. Small models change one bound at a time; large ones,
-// whose factorisations cost, find their set by pivoting first.
+// The minimum of the model on the box; g is its gradient at d = 0. Small models change one bound at a time;
+// large ones, whose factorisations cost, find their set by pivoting first.
 template <class Model>
 Vector minimise_on_box(const Model& model, const Vector& g, const Vector& lower, const Vector& upper) {
   constexpr Eigen::Index kLarge = 33;

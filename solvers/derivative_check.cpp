@@ -28,8 +28,9 @@ struct Slope {
   double uncertainty = std::numeric_limits<double>::infinity();
 };
 
-// The next row of the tableau: slopes at this step, extrapolated with the row before. Keeps the entry whose neighbours agree
-// best, all components together: among many, some would agree by chance. `rounding`: what it leaves in a slope at this step.
+// The next row of the tableau: slopes at this step, extrapolated with the row before. Keeps the entry whose
+// neighbours agree best, all components together: among many, some would agree by chance. `rounding`: what it
+// leaves in a slope at this step.
 void extrapolate(std::vector<Vector>& tableau, Vector slope, double power, double rounding, Slope& best) {
   std::vector<Vector> row{std::move(slope)};
   double factor = power;
@@ -107,7 +108,8 @@ DerivativeComparison compare_gram(const std::vector<ParameterInfo>& list, const 
   return c;
 }
 
-// A sum of products that cancel has lost digits, and a unit in the last place of the parameters changes 2 J'r by 2 J'J of it.
+// A sum of products that cancel has lost digits, and a unit in the last place of the parameters changes 2 J'r
+// by 2 J'J of it.
 double gradient_rounding(const Matrix& j, const Vector& r, const ConstVectorRef& x, Eigen::Index i) {
   const Vector column = j.col(i).cwiseAbs();
   double sum = 2 * column.dot(r.cwiseAbs());

@@ -1,14 +1,16 @@
-// Derivatives of a least-squares cost at a point in a form that neither the units of the parameters nor a factor on the
-// residuals can bring out of the range or the digits of doubles.
+// Derivatives of a least-squares cost at a point in a form that neither the units of the parameters nor a
+// factor on the residuals can bring out of the range or the digits of doubles.
 #pragma once
 
 #include "problems/problem.hpp"
 
 namespace odobench {
 
-// The linear model of the residuals around u, in units of their norm:  r(u + d)/|r(u)| = b + A S d,  S = diag(size), with
-// orthogonal transformations applied from the left, so that only lengths and angles are kept:
-//     A'A = correlations of the columns of J (unit diagonal; a zero column stays zero),  A'b = their cosines with r,
+// The linear model of the residuals around u, in units of their norm:  r(u + d)/|r(u)| = b + A S d,  S =
+// diag(size), with orthogonal transformations applied from the left, so that only lengths and angles are
+// kept:
+//     A'A = correlations of the columns of J (unit diagonal; a zero column stays zero),  A'b = their cosines
+//     with r,
 //     |b| <= 1: the part of r that the columns can reach,  size_i = |J_i| / |r|.
 struct LinearModel {
   double cost = 0;
@@ -18,7 +20,8 @@ struct LinearModel {
   bool truncated = false;  // directions were dropped that J'J in doubles cannot resolve
 };
 
-// From J = r'r, J'r, J'J (in any coordinates): A and b from the eigenvalues of the equilibrated J'J; those below
+// From J = r'r, J'r, J'J (in any coordinates): A and b from the eigenvalues of the equilibrated J'J; those
+// below
 // 1e-13 m of the largest are rounding and are dropped. cost > 0 and all finite.
 LinearModel linear_model(const NormalEquations& e);
 

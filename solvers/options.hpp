@@ -1,4 +1,5 @@
-// Solver options as a user writes them, `pso[swarm=60,inertia=0.7]`, bound to the fields of an options struct.
+// Solver options as a user writes them, `pso[swarm=60,inertia=0.7]`, bound to the fields of an options
+// struct.
 #pragma once
 
 #include <functional>
@@ -33,8 +34,8 @@ struct OptionDescription {
 
 // Ties option names to fields; one list serves parsing, validation, `bench list solvers` and the run record.
 //
-// What takes memory or time before the first evaluation has an upper limit, so that a typing error is told and does not run
-// out of memory.
+// What takes memory or time before the first evaluation has an upper limit, so that a typing error is told
+// and does not run out of memory.
 inline constexpr int kLargestPopulation = 100'000;
 
 class OptionBinder {
@@ -44,8 +45,8 @@ class OptionBinder {
               double highest = std::numeric_limits<double>::infinity());
   void integer(std::string name, int& field, std::string help, int lowest = std::numeric_limits<int>::min(),
                int highest = std::numeric_limits<int>::max());
-  // Numbers that the method chooses itself unless one is given: "auto", which the field holds as -1 (double) or 0 (int) and
-  // which no number typed means.
+  // Numbers that the method chooses itself unless one is given: "auto", which the field holds as -1 (double)
+  // or 0 (int) and which no number typed means.
   void automatic(std::string name, double& field, std::string help, double lowest, double highest);
   void automatic(std::string name, int& field, std::string help, int lowest, int highest);
   void flag(std::string name, bool& field, std::string help);
@@ -54,8 +55,9 @@ class OptionBinder {
   // Any text but none; `allowed` says what is meant.
   void text(std::string name, std::string& field, std::string help, std::string allowed);
 
-  // Writes the values into the fields. Throws std::invalid_argument: unknown key (lists the known ones and the
-  // nearest), not a number, outside the range; the message names solver, field, value and the violated relation.
+  // Writes the values into the fields. Throws std::invalid_argument: unknown key (lists the known ones and
+  // the nearest), not a number, outside the range; the message names solver, field, value and the violated
+  // relation.
   void apply(const std::string& solver, const OptionValues& values);
   std::vector<OptionDescription> describe() const;
   // Every option with the value in force.

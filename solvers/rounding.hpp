@@ -6,8 +6,8 @@
 
 namespace odobench {
 
-// As a part of the cost J(u) = r'r: the square of what the residuals change by when every parameter moves by two units in its last
-// place. `length`: |J_i| / |r| in unit coordinates.
+// As a part of the cost J(u) = r'r: the square of what the residuals change by when every parameter moves by
+// two units in its last place. `length`: |J_i| / |r| in unit coordinates.
 double resolution_part_of_cost(const Box& box, const Vector& u, const Vector& length);
 
 // The larger of that and what the problem itself states (Problem::rounding_floor).

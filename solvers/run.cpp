@@ -224,8 +224,8 @@ void Run::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) {
   Matrix x(problem_.dimension(), count);
   for (Eigen::Index k = 0; k < count; ++k) x.col(k) = box_.to_parameters(candidates.col(k));
 
-  // Chunks of a fixed size, whatever the thread count, so that a reached target, an interruption or the clock end a
-  // large batch early and at the same candidate.
+  // Chunks of a fixed size, whatever the thread count, so that a reached target, an interruption or the clock
+  // end a large batch early and at the same candidate.
   constexpr Eigen::Index kChunk = 32;
   constexpr Eigen::Index kSlice = 8;
   Vector values(kChunk);

@@ -1,5 +1,6 @@
-// The one driver of every solver: budget, clock, target, interruption, best-so-far, trace and evaluation counts live
-// here; a solver is only its method. Solvers work in the unit box of solvers/box.hpp: u in [-1, 1]^m.
+// The one driver of every solver: budget, clock, target, interruption, best-so-far, trace and evaluation
+// counts live here; a solver is only its method. Solvers work in the unit box of solvers/box.hpp: u in [-1,
+// 1]^m.
 #pragma once
 
 #include <atomic>
@@ -54,8 +55,9 @@ struct TraceEntry {
 
 class Run {
  public:
-  // `start` in parameter units; `interrupt` (may be null) is polled before every evaluation. `threads` > 1 lets
-  // batch_cost share its candidates among the threads of the calling tbb::task_arena; the values do not depend on it.
+  // `start` in parameter units; `interrupt` (may be null) is polled before every evaluation. `threads` > 1
+  // lets batch_cost share its candidates among the threads of the calling tbb::task_arena; the values do not
+  // depend on it.
   Run(const Problem& problem, const Budget& budget, const Vector& start, std::uint64_t seed,
       const std::atomic<bool>* interrupt = nullptr, Observer observer = {}, int threads = 1);
 
@@ -65,9 +67,9 @@ class Run {
   const Vector& start() const { return start_; }  // unit coordinates
   Random& random() { return random_; }
 
-  // Evaluations. Once stop() holds they return +infinity (derivatives zero) without calling the model, so a budget
-  // is never exceeded. A non-finite cost is counted and handed to the method as +infinity; so is a point whose
-  // derivatives are not finite (its cost still counts for the best).
+  // Evaluations. Once stop() holds they return +infinity (derivatives zero) without calling the model, so a
+  // budget is never exceeded. A non-finite cost is counted and handed to the method as +infinity; so is a
+  // point whose derivatives are not finite (its cost still counts for the best).
   double cost(const ConstVectorRef& u);
   double cost_and_gradient(const ConstVectorRef& u, VectorRef g);
   double normal_equations(const ConstVectorRef& u, NormalEquations& out);  // out in unit coordinates
@@ -75,14 +77,15 @@ class Run {
   // candidates m x k, one per column; costs k. Candidates beyond the budget get +infinity.
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs);
 
-  // A walk on the problem's lattice, in parameter units. lattice_point gives the admissible point nearest to start();
-  // lattice_change is +infinity once stop() holds; lattice_visit takes the point, whose cost
+  // A walk on the problem's lattice, in parameter units. lattice_point gives the admissible point nearest to
+  // start(); lattice_change is +infinity once stop() holds; lattice_visit takes the point, whose cost
   // is known by walking there, into account for the best: also after a stop.
   std::unique_ptr<LatticePoint> lattice_point();
   double lattice_change(const LatticePoint& point, Eigen::Index i, double value);
   void lattice_visit(const LatticePoint& point);
 
-  // True when the method must return; the reason is kept. Cheap: methods and adapters ask as often as they like.
+  // True when the method must return; the reason is kept. Cheap: methods and adapters ask as often as they
+  // like.
   bool stop();
   // One iteration of the method is done: counts it and tells the observer.
   void iteration();
@@ -104,13 +107,13 @@ class Run {
   Termination stop_reason() const { return stop_reason_; }
   std::string stop_message() const;
 
-  // A run of its own from `start` (unit coordinates), of at most `most` evaluations (0: no limit but this run's) and within
-  // what this run has left. What it did counts here once absorb() has taken it in.
+  // A run of its own from `start` (unit coordinates), of at most `most` evaluations (0: no limit but this
+  // run's) and within what this run has left. What it did counts here once absorb() has taken it in.
   Run local(const ConstVectorRef& start, std::int64_t most);
   void absorb(const Run& local);
 
-  // Begins a following phase (polish) at the best point: start() is the best point, the budget is replaced, counts,
-  // clock, trace and best go on; a stop for evaluations or time is reconsidered.
+  // Begins a following phase (polish) at the best point: start() is the best point, the budget is replaced,
+  // counts, clock, trace and best go on; a stop for evaluations or time is reconsidered.
   void restart_from_best(const Budget& budget);
 
  private:

@@ -33,8 +33,9 @@ Outcome run_phase(const Solver& solver, Run& run) {
   return outcome;
 }
 
-// Tests the returned point and says what may be said of it. A method that ended by itself has converged where the test
-// holds and has stalled where it does not, whatever the method says; without derivatives it keeps its own word.
+// Tests the returned point and says what may be said of it. A method that ended by itself has converged where
+// the test holds and has stalled where it does not, whatever the method says; without derivatives it keeps
+// its own word.
 void conclude(const Problem& problem, const Outcome& outcome, Result& result) {
   const bool by_itself =
       outcome.termination == Termination::Settled || outcome.termination == Termination::Stalled;

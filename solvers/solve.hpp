@@ -12,8 +12,8 @@ struct SolveOptions {
   const std::atomic<bool>* interrupt = nullptr;
   Observer observer;
   int threads = 1;
-  // Solver that goes on from the best point found, e.g. "lm"; the name "" means none. It spends from the same budget:
-  // min(max_evaluations / 10, 500) evaluations and a tenth of the time are kept for it.
+  // Solver that goes on from the best point found, e.g. "lm"; the name "" means none. It spends from the same
+  // budget: min(max_evaluations / 10, 500) evaluations and a tenth of the time are kept for it.
   SolverSpec polish;
 };
 
@@ -30,7 +30,8 @@ struct Result {
   std::int64_t non_finite = 0;
   double seconds = 0;
   std::vector<TraceEntry> trace;
-  // Of the returned point; absent where the problem has no derivatives and after an interruption or a failure.
+  // Of the returned point; absent where the problem has no derivatives and after an interruption or a
+  // failure.
   std::optional<OptimalityCheck> check;
 
   // Distinct optima, the lowest first, of a method that starts many times.
@@ -41,9 +42,10 @@ struct Result {
   std::string full() const;   // several lines, with the parameters
 };
 
-// `start` in parameter units (n), finite. Throws std::invalid_argument on unknown solvers, bad options or such a start; everything that
-// happens while running is in the result: a method that cannot run gives NotApplicable with the reason, a method that
-// throws gives Failed with its message and the best point so far.
+// `start` in parameter units (n), finite. Throws std::invalid_argument on unknown solvers, bad options or
+// such a start; everything that happens while running is in the result: a method that cannot run gives
+// NotApplicable with the reason, a method that throws gives Failed with its message and the best point so
+// far.
 Result solve(const Problem& problem, const SolverSpec& solver, const Vector& start,
              const SolveOptions& options);
 

@@ -1,5 +1,6 @@
-// What a method is: a solver lowers the cost of a Run. Adding one = a pair of files with a SolverEntry factory and a
-// row in registry.cpp; lists, tables, documentation and the conformance tests pick it up by themselves.
+// What a method is: a solver lowers the cost of a Run. Adding one = a pair of files with a SolverEntry
+// factory and a row in registry.cpp; lists, tables, documentation and the conformance tests pick it up by
+// themselves.
 #pragma once
 
 #include <functional>
@@ -12,9 +13,9 @@
 
 namespace odobench {
 
-// How the method itself ended: Settled by a tolerance of its own, Stalled without further progress, IterationLimit,
-// Failed. It never says Converged: solve() does, by its own test. When run.stop() holds the driver's reason replaces it.
-// One of several optima that a method has seen.
+// How the method itself ended: Settled by a tolerance of its own, Stalled without further progress,
+// IterationLimit, Failed. It never says Converged: solve() does, by its own test. When run.stop() holds the
+// driver's reason replaces it. One of several optima that a method has seen.
 struct LocalOptimum {
   Vector x;  // parameter units
   double cost = 0;
@@ -45,13 +46,14 @@ struct SolverEntry {
   bool stochastic = false;
   // The options with defaults, ranges and help.
   std::function<std::vector<OptionDescription>()> options;
-  // Throws std::invalid_argument on unknown options or values out of range. `in_force`, if not null, receives every
-  // option with its value.
+  // Throws std::invalid_argument on unknown options or values out of range. `in_force`, if not null, receives
+  // every option with its value.
   std::function<std::unique_ptr<Solver>(const OptionValues& values, OptionValues* in_force)> make;
 };
 
 // Builds the two callables of an entry for a solver class constructed from its Options struct, which has
-//   void bind(OptionBinder&)   and   void validate() const  (relations between fields; throws std::invalid_argument).
+//   void bind(OptionBinder&)   and   void validate() const  (relations between fields; throws
+//   std::invalid_argument).
 template <class SolverClass, class Options>
 SolverEntry make_entry(std::string name, std::string summary, bool stochastic, Options defaults = {}) {
   SolverEntry entry{name, std::move(summary), stochastic, {}, {}};

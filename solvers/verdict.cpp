@@ -68,8 +68,8 @@ void check_normal_equations(OptimalityCheck& check, const Problem& problem, cons
   judge(check, problem, x, box, model);
 }
 
-// Half the matrix of second derivatives in unit coordinates, by differences of gradients towards the middle of the box.
-// Empty where one of them is not finite.
+// Half the matrix of second derivatives in unit coordinates, by differences of gradients towards the middle
+// of the box. Empty where one of them is not finite.
 Matrix curvature(const Problem& problem, const Box& box, const Vector& u, const Vector& g) {
   constexpr double kProbe = 1e-6;
   Matrix h(u.size(), u.size());
@@ -84,8 +84,8 @@ Matrix curvature(const Problem& problem, const Box& box, const Vector& u, const 
   return 0.5 * (h + h.transpose());
 }
 
-// What the quadratic model gains inside the box: by its minimum, or where it curves downwards along a free direction, by
-// going there as far as the box allows.
+// What the quadratic model gains inside the box: by its minimum, or where it curves downwards along a free
+// direction, by going there as far as the box allows.
 double newton_gain(const Matrix& h, const Vector& g, const Vector& u) {
   const Vector lower = room_below(u), upper = room_above(u);
   Indices free;

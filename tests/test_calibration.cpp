@@ -152,7 +152,8 @@ std::vector<Recording> driven_by(const Vector& truth, double noise) {
   return recordings;
 }
 
-// The structured form squares errors of the heading, not headings: near exact data it has the digits of the equations as written.
+// The structured form squares errors of the heading, not headings: near exact data it has the digits of the
+// equations as written.
 TEST(Calibration, TheStructuredCostKeepsItsDigitsNearExactData) {
   const Vector truth = perturbed(4);
   for (const auto& [noise, relative] : std::vector<std::pair<double, double>>{
@@ -187,8 +188,8 @@ TEST(Calibration, TheGradientKeepsItsDigitsNearExactData) {
   }
 }
 
-// Data without noise: what rounding leaves is below the stated floor and never negative, not even before the clamp, and a solver
-// that gets there has converged.
+// Data without noise: what rounding leaves is below the stated floor and never negative, not even before the
+// clamp, and a solver that gets there has converged.
 TEST(Calibration, ExactDataEndAtTheRoundingFloor) {
   const Vector truth = perturbed(4);
   const std::vector<Recording> recordings = driven_by(truth, 0);

@@ -1,4 +1,5 @@
-// The calibration problem on the real recordings, against independent evaluations and the thesis' printed tables.
+// The calibration problem on the real recordings, against independent evaluations and the thesis' printed
+// tables.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,8 +40,8 @@ void check_point(const json& point, const std::string& name) {
   NormalEquations e;
   model.normal_equations(z, e);
   expect_relative(e.cost, straight, 1e-10, name + " normal equations");
-  // The reference's derivatives are with respect to parameter / nominal. At the optimum they are differences of terms of
-  // the size |J_i| |r|, of which neither evaluation keeps more than about 1e-10.
+  // The reference's derivatives are with respect to parameter / nominal. At the optimum they are differences
+  // of terms of the size |J_i| |r|, of which neither evaluation keeps more than about 1e-10.
   const Vector nominal = Problem(testing::vitko_model()).start(), expected = vector_of(point.at("dJ_dz"));
   for (Eigen::Index i = 0; i < z.size(); ++i) {
     const double rounding = 1e-9 * std::abs(nominal[i]) * std::sqrt(e.jtj(i, i) * e.cost);

@@ -1,5 +1,6 @@
 // scripts/check.sh must fail, and say where, for each kind of violation it looks for: planted one by one in a
 // small tree.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -118,6 +119,18 @@ TEST(CheckScript, FailsForALongFile) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.out.find("solvers/method.cpp:451: longer than 450 lines"), std::string::npos)
       << outcome.out;
+}
+
+TEST(CheckScript, FailsForAWideCommentAndALongFunction) {
+  const MiniatureTree tree;
+  std::string text = "// " + std::string(108, 'x') + "\nint f() {\n  // A comment does not count.\n";
+  for (int line = 0; line < 59; ++line) text += "  f();\n";
+  tree.write("solvers/method.cpp", text + "}\n");
+  const ProcessResult outcome = tree.check();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("solvers/method.cpp:1: a comment of 111 columns"));
+  EXPECT_THAT(outcome.out,
+              ::testing::HasSubstr("solvers/method.cpp:2: a function of 61 lines, expected at most 60"));
 }
 
 TEST(CheckScript, FailsForUnformattedCodeOrSaysThatItCannotLook) {

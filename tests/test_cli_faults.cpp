@@ -1,5 +1,6 @@
-// Every verb that writes, with each of its file operations failing once: a full disc, an input/output error, a name that cannot be
-// given, a process that is killed there. What is on disc afterwards is whole, and nothing else is.
+// Every verb that writes, with each of its file operations failing once: a full disc, an input/output error,
+// a name that cannot be given, a process that is killed there. What is on disc afterwards is whole, and
+// nothing else is.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -83,6 +84,11 @@ const std::vector<Verb> kVerbs = {
      [](const std::string& out) -> Words {
        return {"fuse", "--sensors=" + (source_dir() / "datasets/sensors/heading_only.json").string(),
                "--filter=ekf", "--out=" + out};
+     },
+     true},
+    {"plan",
+     [](const std::string& out) -> Words {
+       return {"plan", "--robot=exact", "--threads=1", "--out=" + out};
      },
      true},
     {"tracks",

@@ -387,7 +387,8 @@ TEST(CliFilter, ThePublishedProgramsSeriesExact) {
   expect_series("exact", "entropy_series_csharp_exact.csv", false);
 }
 
-// Columns of another maker's file by mapping: noise-free encoders, noisy everything else of the thesis' simulated robot.
+// Columns of another maker's file by mapping: noise-free encoders, noisy everything else of the thesis'
+// simulated robot.
 TEST(CliFilter, OtherColumnNames) {
   ODOBENCH_NEEDS_SHARED();
   const fs::path data = testing::shared_folder() / "reference" / "dynamics_filter_run.csv";

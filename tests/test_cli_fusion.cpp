@@ -245,6 +245,28 @@ TEST(CliTune, LowersTheCostWithSolversOfEveryKind) {
   expect_refusal({"tune", "--sensors=" + kHeading, "--out=" + out}, 2, "--overwrite");
 }
 
+TEST(CliTune, LeavesRecordsOfEverySetting) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "records").string();
+  const ProcessResult tuned =
+      run_bench({"tune", "--sensors=" + (source_dir() / "datasets/sensors/heading_only.json").string(),
+                 "--max-evals=8", "--format=json", "--records=" + out});
+  ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+  const nlohmann::json tables = nlohmann::json::parse(tuned.out).at("tables");
+  std::vector<nlohmann::json> records;
+  for (const std::string& line : lines(content(folder / "records/runs.jsonl")))
+    records.push_back(nlohmann::json::parse(line));
+  const nlohmann::json& rows = tables.at(2).at("rows");
+  ASSERT_EQ(records.size(), rows.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    EXPECT_EQ(records[i].at("problem"), "tuning:likelihood");
+    EXPECT_EQ(records[i].at("label"), rows[i].at("setting"));
+    EXPECT_EQ(records[i].at("cost"), rows[i].at("cost"));
+    EXPECT_EQ(records[i].at("statistics").at("rmse_heading"), rows[i].at("rmse_heading"));
+  }
+  EXPECT_THAT(run_bench({"report", out}).out, ::testing::HasSubstr("nlopt:bobyqa"));
+}
+
 TEST(CliTune, RefusesBadInput) {
   expect_refusal({"tune", "--sensors=" + kHeading, "--filter=none"}, 2, "expected ekf or ukf");
   expect_refusal({"tune", "--sensors=" + kHeading, "--objective=best"}, 2, "expected likelihood or error");

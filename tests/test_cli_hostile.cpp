@@ -1,6 +1,6 @@
-// A table of hostile inputs: what a user's file may hold, the exit code, what the one line says. tests/hostile/cases.json is the
-// table: in an example of `format` the first `from` becomes `to` (without `from` the whole file does), each character up to
-// U+00FF standing for a byte.
+// A table of hostile inputs: what a user's file may hold, the exit code, what the one line says.
+// tests/hostile/cases.json is the table: in an example of `format` the first `from` becomes `to` (without
+// `from` the whole file does), each character up to U+00FF standing for a byte.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

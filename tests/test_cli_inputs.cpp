@@ -1,4 +1,5 @@
-// What the program reads: inputs without an end, files outside a set, and text that would steer the reader's terminal.
+// What the program reads: inputs without an end, files outside a set, and text that would steer the reader's
+// terminal.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
-// Every LaTeX table that the program makes, put into a document and compiled. Skipped without a LaTeX that has siunitx 3.
+// Every LaTeX table that the program makes, put into a document and compiled. Skipped without a LaTeX that
+// has siunitx 3.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -200,6 +200,56 @@ TEST(CliPlan, SaysWhatIsDeterminedAndWhatNot) {
   for (const auto& row : after.at(0).at("rows")) EXPECT_LE(row.at("deviation").get<double>(), 1.2);
 }
 
+TEST(CliPlan, LeavesARecordThatGivesTheTablesAgain) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "plan").string();
+  const std::vector<std::string> words = {"plan",         "--robot=off_nominal", "--drives=line_x",
+                                          "--replicas=4", "--candidates=all",    "--out=" + out};
+  const ProcessResult planned = run_bench(words);
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_EQ(run_bench({"report", out}).out, planned.out);
+  EXPECT_EQ(content(folder / "plan/tables.txt"), planned.out);
+  EXPECT_EQ(run_bench({"report", out, "--out=" + out + "/page.html"}).exit_code, 0);
+  EXPECT_THAT(content(folder / "plan/page.html"), HasSubstr("Planned drives"));
+  const ProcessResult again = run_bench(words);
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("it holds runs.jsonl already; choose another folder or give --overwrite"));
+  const nlohmann::json same = tables_of(run_bench({"compare", out, out, "--format=json"}));
+  EXPECT_GE(same.at(0).at("rows")[0].at("compared").get<int>(), 10);
+  EXPECT_EQ(same.at(0).at("rows")[0].at("changed").get<int>(), 0);
+}
+
+TEST(CliVerify, LeavesRecordsThatReportAndCompareRead) {
+  const TemporaryFolder folder;
+  const std::string scenario = folder.file("s.json", small_scenario("")), out = (folder / "new").string();
+  const ProcessResult judged = run_bench({"verify", "--scenario=" + scenario, "--parameters=truth",
+                                          "--repeat=3", "--format=json", "--out=" + out});
+  ASSERT_EQ(judged.exit_code, 0) << judged.err;
+  const nlohmann::json tables = tables_of(judged),
+                       report = tables_of(run_bench({"report", out, "--format=json"}));
+  const auto table = [&](const nlohmann::json& list, const std::string& id) {
+    for (const nlohmann::json& one : list)
+      if (one.at("id") == id) return one.at("rows");
+    ADD_FAILURE() << "no table " << id;
+    return nlohmann::json::array();
+  };
+  const auto number = [](const nlohmann::json& cell) {
+    return (cell.is_object() ? cell.at("value") : cell).get<double>();
+  };
+  // The means over the repeats are those over all drives; both orders of summation are right to the last digits.
+  const nlohmann::json sums = table(tables, "verify.totals"), reported = table(report, "totals");
+  ASSERT_EQ(reported.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(number(reported[i].at("total")), number(sums[i].at("total")), 1e-12);
+  const nlohmann::json ends = table(tables, "verify.arrival"), told = table(report, "verify.arrival");
+  ASSERT_EQ(told.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const auto& [name, cell] : told[i].items())
+      if (name != "parameters") EXPECT_NEAR(number(cell), number(ends[i].at(name)), 1e-15) << name;
+  for (const nlohmann::json& one : report) EXPECT_NE(one.at("id"), "solvers");
+  EXPECT_EQ(run_bench({"compare", out, out, "--fail-on=e_sr:+1%"}).exit_code, 0);
+}
+
 TEST(CliVerify, RanksTheTruthBeforeNominal) {
   const TemporaryFolder folder;
   const std::string scenario = folder.file(

@@ -107,7 +107,8 @@ TEST(CsvDialect, WhatIsNoTableIsRefusedInOneLine) {
       says(refusal("a,b\n\"1\"5,2\n"), {"t.csv:2: found a quote that is not closed, or text behind one"}));
 }
 
-// A number cut in two would pass for another one: a last line without a break must at least be whole in its fields.
+// A number cut in two would pass for another one: a last line without a break must at least be whole in its
+// fields.
 TEST(CsvDialect, ALastLineWithoutABreak) {
   const std::string cut = "found the end of the file inside the line, expected a line break";
   EXPECT_TRUE(says(refusal("a,b\n1,2\n3"), {"t.csv:3: " + cut}));

@@ -1,5 +1,5 @@
-// Derivatives that problems state against differences: every problem of the catalogue, the calibration, and what is wrong on
-// purpose.
+// Derivatives that problems state against differences: every problem of the catalogue, the calibration, and
+// what is wrong on purpose.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What a plan promises: the right rank and null directions of ideal drives, and standard deviations that calibrations
-// of simulated drives keep.
+// What a plan promises: the right rank and null directions of ideal drives, and standard deviations that
+// calibrations of simulated drives keep.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

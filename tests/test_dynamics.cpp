@@ -1,4 +1,5 @@
-// Motor and four-wheel robot: against independent solutions, against what physics demands, and what bad input gets.
+// Motor and four-wheel robot: against independent solutions, against what physics demands, and what bad input
+// gets.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -238,8 +239,8 @@ TEST(Dynamics, SensorsMatchTheReferenceRun) {
   }
 }
 
-// The geometry of (2.24)-(2.28) with this numbering: wheel 3, front right, lies on the filter's x axis, wheel 1
-// opposite; a rotation moves them along y by L times the angle.
+// The geometry of (2.24)-(2.28) with this numbering: wheel 3, front right, lies on the filter's x axis, wheel
+// 1 opposite; a rotation moves them along y by L times the angle.
 TEST(Dynamics, TheTruthMovesRigidly) {
   const DriveSetup setup = setup_of("grip", "exp1_steered");
   const SensorRun run =

@@ -1,5 +1,5 @@
-// The relative-entropy filter's window: direct and profile form, and the searches, against independent 50-digit
-// evaluations.
+// The relative-entropy filter's window: direct and profile form, and the searches, against independent
+// 50-digit evaluations.
 #include <gtest/gtest.h>
 
 #include <cmath>

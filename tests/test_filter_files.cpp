@@ -1,4 +1,5 @@
-// Readers of the relative-entropy filter's files: what they accept, what each number becomes, what they refuse.
+// Readers of the relative-entropy filter's files: what they accept, what each number becomes, what they
+// refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

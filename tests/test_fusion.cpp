@@ -135,7 +135,8 @@ TEST(Fusion, DelayedMeasurementsAreUsedInTheOrderOfTheirStamps) {
   for (Measurement& m : delayed[0].data) m.arrival_us += 40'000;
   FusionOptions options;
   const FusionResult a = fuse(r, wrong(), prompt, options), b = fuse(r, wrong(), delayed, options);
-  // Late knowledge at every instant, but the same once everything has arrived: some time after the last frame.
+  // Late knowledge at every instant, but the same once everything has arrived: some time after the last
+  // frame.
   std::size_t same = 0, different = 0;
   for (std::size_t k = 10; k < r.size(); ++k) (a.track.x[k] == b.track.x[k] ? same : different) += 1;
   EXPECT_GT(same, 10u);

@@ -1,4 +1,5 @@
-// Pages of reports: that nothing in them is read as markup, that numbers keep their digits, that nothing is fetched.
+// Pages of reports: that nothing in them is read as markup, that numbers keep their digits, that nothing is
+// fetched.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

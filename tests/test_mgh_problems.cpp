@@ -114,7 +114,8 @@ TEST(MghProblems, TheComparisonItselfSeesSmallErrors) {
   EXPECT_NEAR(errors.jacobian, 1e-10, 1e-12);
 }
 
-// Norms of the residuals at the starts as the authors' own test program for MINPACK prints them, with eight digits.
+// Norms of the residuals at the starts as the authors' own test program for MINPACK prints them, with eight
+// digits.
 TEST(MghProblems, StartsHaveTheNormsOfMinpacksTests) {
   const struct {
     const char* name;
@@ -381,7 +382,8 @@ TEST(ClassicCatalogue, DocumentationListsEveryProblem) {
   }
 }
 
-// Strictly convex: the conditions of Karush, Kuhn and Tucker hold at one point only, and lm's steps are exact there.
+// Strictly convex: the conditions of Karush, Kuhn and Tucker hold at one point only, and lm's steps are exact
+// there.
 TEST(ClassicCatalogue, CornerKnowsItsOptimum) {
   for (const int n : {2, 5, 12, 40}) {
     const Problem problem = make_classic_problem("corner", n);

@@ -15,7 +15,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// J = (x^2 - 1)^2 + (0.1 (x - 1))^2: minima at 1 (J = 0) and near -1 (J near 0.04), a ridge near 0 between their basins.
+// J = (x^2 - 1)^2 + (0.1 (x - 1))^2: minima at 1 (J = 0) and near -1 (J near 0.04), a ridge near 0 between
+// their basins.
 struct TwoValleys {
   std::vector<ParameterInfo> list{{"x", "1", -1.2, -2, 2}};
   std::string name() const { return "two-valleys"; }

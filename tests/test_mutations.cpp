@@ -1,4 +1,5 @@
-// Five hundred damaged files of every format that the program reads: each ends with a result or with one clear line.
+// Five hundred damaged files of every format that the program reads: each ends with a result or with one
+// clear line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

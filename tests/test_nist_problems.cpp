@@ -159,7 +159,8 @@ TEST(NistProblems, OverflowIsNotFiniteAndNoFault) {
   EXPECT_FALSE(std::isfinite(misra.cost(Eigen::Vector2d(500, -0.9))));
 }
 
-// Where exp overflows although the curve is a plain step: Rat43 and Rat42 stay finite, with finite derivatives.
+// Where exp overflows although the curve is a plain step: Rat43 and Rat42 stay finite, with finite
+// derivatives.
 TEST(NistProblems, SigmoidsAreStableFarOut) {
   for (const char* name : {"nist:Rat42/1", "nist:Rat43/1"}) {
     const Problem problem = make_classic_problem(name);

@@ -68,7 +68,8 @@ TEST(RankTest, EqualsTheEnumerationOfAllDeals) {
       }
 }
 
-// Two-sided critical values at 5 % of the published tables (e.g. S. Siegel 1956, table K): U = 23 for 10 and 10, 2 for 5 and 5,
+// Two-sided critical values at 5 % of the published tables (e.g. S. Siegel 1956, table K): U = 23 for 10 and
+// 10, 2 for 5 and 5,
 // 127 for 20 and 20 are the largest that are significant; the next is not.
 TEST(RankTest, MeetsPublishedCriticalValues) {
   // `count` values each; `after` wins exactly u pairs.
@@ -181,7 +182,8 @@ TEST(Holm, StepsDown) {
   EXPECT_THAT(holm({}), ElementsAre());
 }
 
-// Ties of three and two: s^2 = 9 / 12 (7 - 30 / 30) = 4.5 and U = 6.5, so that z = 3 / sqrt(4.5) / 2 = sqrt(2) / 2.
+// Ties of three and two: s^2 = 9 / 12 (7 - 30 / 30) = 4.5 and U = 6.5, so that z = 3 / sqrt(4.5) / 2 =
+// sqrt(2) / 2.
 TEST(RankTest, ApproximationByHand) {
   const RankTest test = rank_test_normal({1, 1, 2}, {1, 2, 3});
   EXPECT_EQ(test.u, 6.5);

@@ -61,7 +61,8 @@ TEST(SimulateKinematics, MatchesTheReferenceTo1e12) {
   EXPECT_EQ(cases, 12u);
 }
 
-// Steering folded into (-pi/2, pi/2], wheels backwards for it, and least squares undo the inverse for any robot.
+// Steering folded into (-pi/2, pi/2], wheels backwards for it, and least squares undo the inverse for any
+// robot.
 TEST(SimulateKinematics, RoundTripsForAnyTwist) {
   Parameters z = nominal();
   for (std::size_t i = 0; i < z.size(); ++i) z[i] *= 1 + 0.01 * std::sin(3.0 * static_cast<double>(i) + 1);

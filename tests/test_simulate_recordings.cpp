@@ -1,4 +1,5 @@
-// Simulated recordings have the character of the published ones, carry their truth, and repeat to the last bit.
+// Simulated recordings have the character of the published ones, carry their truth, and repeat to the last
+// bit.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,7 +49,8 @@ double quantile(std::vector<double> v, double q) {
   return v[static_cast<std::size_t>(q * static_cast<double>(v.size() - 1))];
 }
 
-// The issue of every simulator: "looks alike" must be a number. Measured in the 30 published recordings; within 20 %.
+// The issue of every simulator: "looks alike" must be a number. Measured in the 30 published recordings;
+// within 20 %.
 #define EXPECT_WITHIN_20_PERCENT(found, measured) \
   EXPECT_NEAR((found) / (measured), 1, 0.2) << #found << " is " << (found) << ", measured " << (measured)
 
@@ -211,7 +213,8 @@ TEST(SimulateRecordings, TheTruthLiesOnTheRecordingsClock) {
   const SimulatedSet& set = nominal_set();
   const Recording& r = set.dataset.recordings[0];
   const SimulatedDrive& d = set.drives[0];
-  // Where the recording says the robot is at a time, the true path is too, up to noise and the capture's delay.
+  // Where the recording says the robot is at a time, the true path is too, up to noise and the capture's
+  // delay.
   for (std::size_t k = 100; k < r.size(); k += 500) {
     const double t = 1e-6 * static_cast<double>(r.time_us[k] + d.log_time_us);
     const Pose& p = d.logs.true_poses.at(static_cast<std::size_t>(t / 0.016));

@@ -1,4 +1,5 @@
-// What every registered solver must do, whatever its method: a new row of the registry is tested here by itself.
+// What every registered solver must do, whatever its method: a new row of the registry is tested here by
+// itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -20,7 +21,8 @@ namespace {
 using ::testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// r = scale (x - c) with a quartic coupling of neighbours, in any box, with switches for what goes wrong in practice.
+// r = scale (x - c) with a quartic coupling of neighbours, in any box, with switches for what goes wrong in
+// practice.
 struct Testbed {
   std::vector<ParameterInfo> list;
   double scale = 1;
@@ -321,7 +323,8 @@ std::vector<std::string> solver_names() {
   return names;
 }
 
-// A problem whose parameters have admissible levels: methods that know of them stay on them, all stay in the box.
+// A problem whose parameters have admissible levels: methods that know of them stay on them, all stay in the
+// box.
 TEST_P(Conformance, RunsOnALattice) {
   const Problem problem{WindowProblem(testing::random_window(5, 1))};
   for (const std::int64_t evaluations : {1, 7, 300}) {

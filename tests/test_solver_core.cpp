@@ -1,4 +1,5 @@
-// What all solvers share: option parsing, seeds, the unit box, the driver and the box-constrained quadratic model.
+// What all solvers share: option parsing, seeds, the unit box, the driver and the box-constrained quadratic
+// model.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

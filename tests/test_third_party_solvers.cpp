@@ -1,4 +1,5 @@
-// The adapters around Ceres, Ipopt and NLopt: what they reach, and that the known stalls are cured where they should be.
+// The adapters around Ceres, Ipopt and NLopt: what they reach, and that the known stalls are cured where they
+// should be.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -238,7 +239,8 @@ TEST(ThirdParty, NothingIsPrinted) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-// Ipopt and MUMPS are not safe in several threads, NLopt's generator is thread-local, StoGO has static variables.
+// Ipopt and MUMPS are not safe in several threads, NLopt's generator is thread-local, StoGO has static
+// variables.
 TEST(ThirdParty, ManyThreadsGiveTheBitsOfOne) {
   const std::vector<std::string> solvers{"ip",           "ip[hessian=lbfgs]", "ceres",
                                          "nlopt:crs2",   "nlopt:stogo-rand",  "nlopt:mlsl",

@@ -1,4 +1,5 @@
-// What `converged` may be said of: by the driver alone, by a test that no scale changes, with finite derivatives.
+// What `converged` may be said of: by the driver alone, by a test that no scale changes, with finite
+// derivatives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +37,8 @@ Result run(const Problem& problem, const std::string& solver, std::int64_t evalu
   return solve(problem, parse_solver_list(solver).front(), problem.start(), options);
 }
 
-// Two residuals of two parameters in a box, with what can go wrong: a factor on both, a wrong sign, no finite Jacobian.
+// Two residuals of two parameters in a box, with what can go wrong: a factor on both, a wrong sign, no finite
+// Jacobian.
 struct TwoResiduals {
   enum class Kind { Roots, Rosenbrock } kind = Kind::Roots;
   double factor = 1;
@@ -203,8 +205,8 @@ TEST(BoxQuadratic, LargeModelsSatisfyTheirConditions) {
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
 
-// The unbounded Gauss-Newton step over the coordinates that no bound holds, from central differences of residuals, in long
-// double: what the driver's test must not miss. Shares no code with it.
+// The unbounded Gauss-Newton step over the coordinates that no bound holds, from central differences of
+// residuals, in long double: what the driver's test must not miss. Shares no code with it.
 double long_promise(const Problem& problem, const Vector& x) {
   const auto& list = problem.parameters();
   Vector r(problem.residual_count()), up(r.size()), down(r.size());
@@ -247,7 +249,8 @@ double long_promise(const Problem& problem, const Vector& x) {
   return static_cast<double>(part * (2 - part) * slope.dot(step));
 }
 
-// Of every registered solver on every certified problem and start; two opinions that share no derivative with the verdict.
+// Of every registered solver on every certified problem and start; two opinions that share no derivative with
+// the verdict.
 class CertifiedVerdict : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(CertifiedVerdict, ConvergedIsNeverSaidFalsely) {

@@ -1,7 +1,8 @@
-// Speed of the calibration cost: direct form against the structured form, every vector width this processor has.
+// Speed of the calibration cost: direct form against the structured form, every vector width this processor
+// has.
 //   bench_cost [--data=set.json] [Google Benchmark's flags]      without --data: the demo set
-// Counters: x_direct = time of one direct evaluation / time of this one per candidate, measured in this process;
-// ns_per_sample = time per sample and candidate.
+// Counters: x_direct = time of one direct evaluation / time of this one per candidate, measured in this
+// process; ns_per_sample = time per sample and candidate.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Speed of the filters with three states: a step is a prediction and an update with a pose, as it happens at a camera's
-// frame; `predict` alone is what happens between frames. Further: a whole recording through fuse().
+// Speed of the filters with three states: a step is a prediction and an update with a pose, as it happens at
+// a camera's frame; `predict` alone is what happens between frames. Further: a whole recording through
+// fuse().
 //   bench_filters [Google Benchmark's flags]
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,11 @@
-// Speed of the relative-entropy filter's Hamiltonian core: direct form against profile form, searches, whole runs.
+// Speed of the relative-entropy filter's Hamiltonian core: direct form against profile form, searches, whole
+// runs.
 //   bench_hamiltonian [--data=windows.json] [Google Benchmark's flags]
-// Without --data: synthetic runs made here, `thesis` with the constants of the thesis' program and noise of its
-// variances, `balanced` with weights under which no block of t is decided beforehand. With it: the windows of the file.
-// Counters: x_direct = mean time of a direct greedy window / time of this per window, both of this process;
-// windows/s; evaluations = candidates looked at per window; ns_per_evaluation where that is what is timed.
+// Without --data: synthetic runs made here, `thesis` with the constants of the thesis' program and noise of
+// its variances, `balanced` with weights under which no block of t is decided beforehand. With it: the
+// windows of the file. Counters: x_direct = mean time of a direct greedy window / time of this per window,
+// both of this process; windows/s; evaluations = candidates looked at per window; ns_per_evaluation where
+// that is what is timed.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -29,8 +29,8 @@ void refuse_existing_folder(const char* option, const std::string& path, bool ov
 // `asked`, or for 0 one per core.
 int thread_count(int asked);
 
-// `asked` (the option --kernel), or what the environment variable ODOBENCH_KERNEL says, or the widest of this processor.
-// Throws std::invalid_argument on a bad value of the variable, which names it.
+// `asked` (the option --kernel), or what the environment variable ODOBENCH_KERNEL says, or the widest of this
+// processor. Throws std::invalid_argument on a bad value of the variable, which names it.
 InstructionSet kernel_in_force(std::optional<InstructionSet> asked = std::nullopt);
 
 }  // namespace odobench

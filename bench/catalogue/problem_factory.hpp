@@ -30,17 +30,18 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot);
 // robot.
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel);
 
-// `name`: "calibration" or a classic one, which takes no `data`, with `dimension` (0: its usual one). Throws std::invalid_argument
-// on an unknown name (suggests the nearest) or a dimension that the problem does not take; DataError as above.
+// `name`: "calibration" or a classic one, which takes no `data`, with `dimension` (0: its usual one). Throws
+// std::invalid_argument on an unknown name (suggests the nearest) or a dimension that the problem does not
+// take; DataError as above.
 LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data,
                            InstructionSet kernel);
 
 // Every name make_problem takes.
 std::vector<std::string> problem_names();
 
-// The values of --problem as names: comma lists of names and shell patterns ("nist:*", "mgh:*[!0]"), each name once. A pattern
-// leaves out problems that do not take `dimension` (0: the usual one), with a line in `notes`. Throws std::invalid_argument on an
-// empty item, an unknown name or a pattern that meets nothing.
+// The values of --problem as names: comma lists of names and shell patterns ("nist:*", "mgh:*[!0]"), each
+// name once. A pattern leaves out problems that do not take `dimension` (0: the usual one), with a line in
+// `notes`. Throws std::invalid_argument on an empty item, an unknown name or a pattern that meets nothing.
 std::vector<std::string> resolve_problems(const std::vector<std::string>& lists, int dimension,
                                           std::vector<std::string>& notes);
 

@@ -1,5 +1,5 @@
-// Scenarios by name or file, of either kind: drives of the robot with four steered wheels (datasets/simulate), and
-// drives of the four-wheel robot with motors (problems/dynamics).
+// Scenarios by name or file, of either kind: drives of the robot with four steered wheels
+// (datasets/simulate), and drives of the four-wheel robot with motors (problems/dynamics).
 #pragma once
 
 #include <filesystem>
@@ -27,14 +27,14 @@ using Scenario = std::variant<simulate::RecordingScenario, DynamicsScenario>;
 // Scenarios that come with the program: (name, file), sorted.
 std::vector<std::pair<std::string, std::filesystem::path>> known_scenarios();
 
-// `source`: a file, or the name of a known scenario. Throws std::invalid_argument on a name that is neither (suggests
-// the nearest), DataError "file: /path: ..." on a file with unknown keys or impossible values.
+// `source`: a file, or the name of a known scenario. Throws std::invalid_argument on a name that is neither
+// (suggests the nearest), DataError "file: /path: ..." on a file with unknown keys or impossible values.
 Scenario load_scenario(const std::string& source);
 // The same where only one kind makes sense: for drives to calibrate from.
 simulate::RecordingScenario load_recording_scenario(const std::string& source);
 
-// The robot of a dynamics scenario with the unit and origin (given, chosen) of every parameter, as such a scenario may
-// state it under "robot".
+// The robot of a dynamics scenario with the unit and origin (given, chosen) of every parameter, as such a
+// scenario may state it under "robot".
 std::string robot_json(const dynamics::RobotParameters& robot);
 
 }  // namespace odobench

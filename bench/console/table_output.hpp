@@ -11,8 +11,8 @@
 
 namespace odobench {
 
-// Standard output; console tables as wide as the terminal, with the best values in bold unless NO_COLOR is set; 110 columns and
-// stars elsewhere. Throws std::runtime_error
+// Standard output; console tables as wide as the terminal, with the best values in bold unless NO_COLOR is
+// set; 110 columns and stars elsewhere. Throws std::runtime_error
 // when it cannot be written.
 void print_tables(const std::vector<Table>& tables, Format format);
 void print_text(const std::string& text);

@@ -40,14 +40,15 @@ std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
 // Runs of one call at most: their records are kept until the tables are made, up to 20 kB each.
 inline constexpr std::size_t kMostRuns = 200'000;
 
-// The cells of any number of problems. A cell is made when it is asked for, so that a hundred thousand repetitions begin at once.
+// The cells of any number of problems. A cell is made when it is asked for, so that a hundred thousand
+// repetitions begin at once.
 class CellList {
  public:
-  // One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set, solver,
-  // repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the same for
-  // every solver. A deterministic solver from the nominal start gives the same answer each time: it gets one
-  // cell, and `notes` a line. A polish applies to every solver but itself. `problem`: as of RunCell. Throws
-  // std::invalid_argument when there are more than kMostRuns.
+  // One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set,
+  // solver, repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the
+  // same for every solver. A deterministic solver from the nominal start gives the same answer each time: it
+  // gets one cell, and `notes` a line. A polish applies to every solver but itself. `problem`: as of RunCell.
+  // Throws std::invalid_argument when there are more than kMostRuns.
   void add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes);
 
   std::size_t size() const { return size_; }

@@ -43,7 +43,8 @@ std::vector<Cell> row(const std::string& problem, const Worst& worst) {
                                     : "agrees")};
 }
 
-// The worst point of every parameter and kind, in their order; `points` counts those where there was anything to compare.
+// The worst point of every parameter and kind, in their order; `points` counts those where there was anything
+// to compare.
 std::vector<Worst> worst_of(const LoadedProblem& loaded, std::uint64_t base_seed, int& points,
                             CountLine& progress) {
   std::vector<Worst> worst;

@@ -1,4 +1,5 @@
-// The method of `bench filter`: one of the searches made for the filter's blocks, or any solver of the registry.
+// The method of `bench filter`: one of the searches made for the filter's blocks, or any solver of the
+// registry.
 #pragma once
 
 #include <atomic>
@@ -13,7 +14,8 @@
 
 namespace odobench {
 
-// Solves every window as a problem of the shared cost interface: slower by what that costs, and open to every solver.
+// Solves every window as a problem of the shared cost interface: slower by what that costs, and open to every
+// solver.
 class RegistrySearch final : public BlockSearch {
  public:
   // Seeds are derived from `seed`, the solver and the number of the window.
@@ -22,7 +24,8 @@ class RegistrySearch final : public BlockSearch {
 
   // Every sample that the filter gets, before it gets it.
   void observe(const EntropySample& sample);
-  // Throws std::invalid_argument when the solver cannot run on such windows, std::runtime_error when it has no result.
+  // Throws std::invalid_argument when the solver cannot run on such windows, std::runtime_error when it has
+  // no result.
   SearchResult minimise(std::span<const double> g, std::span<double> x) override;
 
  private:
@@ -40,8 +43,8 @@ struct FilterMethod {
   RegistrySearch* registry = nullptr;   // the same object when it is one
 };
 
-// `text` as typed: coordinate, exact, relaxed, zero, or a solver of the registry. `profile` outlives the result. Throws
-// std::invalid_argument on what is none of them or several.
+// `text` as typed: coordinate, exact, relaxed, zero, or a solver of the registry. `profile` outlives the
+// result. Throws std::invalid_argument on what is none of them or several.
 FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
                                 std::uint64_t seed, InstructionSet kernel,
                                 const std::atomic<bool>& interrupt);

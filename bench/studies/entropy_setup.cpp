@@ -16,8 +16,8 @@
 namespace odobench {
 namespace {
 
-// 0.0085554224 = 0.4 * 0.021388556 rad/s^2, the largest angular acceleration of the thesis' robot: its program uses the
-// number for deg/s^2.
+// 0.0085554224 = 0.4 * 0.021388556 rad/s^2, the largest angular acceleration of the thesis' robot: its
+// program uses the number for deg/s^2.
 constexpr double kThesisStepRotation = 0.0085554224;
 // The window loop of the thesis' program ends two windows before the data do.
 constexpr std::int64_t kThesisRowsUnused = 2;

@@ -1,5 +1,6 @@
-// What `bench filter` was asked for, with every place decided where the thesis' program differs from its own text, and
-// the conversion of file rows to samples of the filter. docs/entropy_filter.md explains the choices (E2, E3, E8, E9, E11).
+// What `bench filter` was asked for, with every place decided where the thesis' program differs from its own
+// text, and the conversion of file rows to samples of the filter. docs/entropy_filter.md explains the choices
+// (E2, E3, E8, E9, E11).
 #pragma once
 
 #include "bench/catalogue/option_values.hpp"
@@ -12,7 +13,8 @@
 
 namespace odobench {
 
-// Where the thesis' program and the corrected filter differ; what is not set follows EntropyOptions::as_published.
+// Where the thesis' program and the corrected filter differ; what is not set follows
+// EntropyOptions::as_published.
 struct EntropyOptions {
   std::string data;                   // CSV file, "-" for standard input
   std::string truth;                  // CSV file; empty: none
@@ -57,7 +59,8 @@ struct ConvertedRow {
   std::array<double, 4> x{}, y{};
 };
 
-// The truth in the model's sense of rotation, with the wheels predicted by (2.24)-(2.27) where the file has none.
+// The truth in the model's sense of rotation, with the wheels predicted by (2.24)-(2.27) where the file has
+// none.
 struct TrueSample {
   double sx = 0, sy = 0, ax = 0, ay = 0, rotation = 0;
   std::array<double, 4> x{}, y{};

@@ -1,4 +1,5 @@
-// What the figures of `bench filter` show, gathered while windows go by in memory that does not depend on how many.
+// What the figures of `bench filter` show, gathered while windows go by in memory that does not depend on how
+// many.
 #pragma once
 
 #include <array>
@@ -14,8 +15,9 @@
 
 namespace odobench {
 
-// Signals of the same rows as bands: buckets of equal width that hold the minimum and the maximum of every signal, so that
-// no extreme is lost. When there would be more than kMost buckets, neighbours are merged and the width doubles.
+// Signals of the same rows as bands: buckets of equal width that hold the minimum and the maximum of every
+// signal, so that no extreme is lost. When there would be more than kMost buckets, neighbours are merged and
+// the width doubles.
 class SignalEnvelope {
  public:
   static constexpr std::size_t kMost = 480;
@@ -35,8 +37,8 @@ class SignalEnvelope {
   std::vector<double> low_, high_;
 };
 
-// Before, after and truth of encoders, accelerations and rotation: as bands over the whole run, and as they are over its
-// first rows. The series are those of reports/kinds/entropy/entropy_tables.hpp.
+// Before, after and truth of encoders, accelerations and rotation: as bands over the whole run, and as they
+// are over its first rows. The series are those of reports/kinds/entropy/entropy_tables.hpp.
 class SignalMeter {
  public:
   explicit SignalMeter(bool with_truth);

@@ -62,7 +62,8 @@ void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const Tru
     raw_x += row.x[w] / 4;
     raw_y += row.y[w] / 4;
   }
-  // The sample is taken at the row, ax12 lies between it and the next: the error of each is against its own truth.
+  // The sample is taken at the row, ax12 lies between it and the next: the error of each is against its own
+  // truth.
   const double mean_x = (truth.ax + next.ax) / 2, mean_y = (truth.ay + next.ay) / 2;
   add_channel(2, truth.ax,
               {row.sample.ax, output.state.ax12 - mean_x + truth.ax, zero.ax12 - mean_x + truth.ax});

@@ -43,8 +43,9 @@ class Average {
   double sum_ = 0, compensation_ = 0, min_ = 0, max_ = 0;
 };
 
-// Errors of every channel before and after the filter and after the filter without increments, and of the dead
-// reckoning with each, against the truth. The figures are those of reports/kinds/entropy/entropy_tables.hpp.
+// Errors of every channel before and after the filter and after the filter without increments, and of the
+// dead reckoning with each, against the truth. The figures are those of
+// reports/kinds/entropy/entropy_tables.hpp.
 class NoiseMeter {
  public:
   explicit NoiseMeter(const FilterSetup& setup);

@@ -52,8 +52,9 @@ class PrivateFolder {
   fs::path path_;
 };
 
-// Runs words[0], found in PATH, without a shell and with nothing to read; what it writes goes to `log`. Its exit code, 127
-// when there is no such program, 128 + signal when one ended it. Ended early when `stop` is asked for: Interruption.
+// Runs words[0], found in PATH, without a shell and with nothing to read; what it writes goes to `log`. Its
+// exit code, 127 when there is no such program, 128 + signal when one ended it. Ended early when `stop` is
+// asked for: Interruption.
 int run(std::vector<std::string> words, const std::string& log, const Stop& stop) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

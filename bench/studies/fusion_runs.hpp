@@ -1,4 +1,5 @@
-// Recordings with one parameter set and one filter, and synthetic sensors: what `bench fuse` and `bench tune` share.
+// Recordings with one parameter set and one filter, and synthetic sensors: what `bench fuse` and `bench tune`
+// share.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,8 @@ struct FusedRow {
   PoseColumns track;  // all recordings, one after the other
 };
 
-// All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the result.
+// All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the
+// result.
 FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const FilterChoice& filter,
                   const SensorsFile& sensors, const std::vector<std::vector<SensorStream>>& streams,
                   int threads);

@@ -30,8 +30,8 @@ std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std
 // Throws std::invalid_argument when there is one of this label already.
 void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets);
 
-// Every entry of --parameters, comma lists taken apart; none: "nominal". Warns about parameters outside the box and
-// throws std::invalid_argument when two sets have one label.
+// Every entry of --parameters, comma lists taken apart; none: "nominal". Warns about parameters outside the
+// box and throws std::invalid_argument when two sets have one label.
 std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
                                               const std::vector<std::string>& lists);
 // The entries of comma lists of such, except where a file has a comma in its name; "nominal" for none.

@@ -13,6 +13,7 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/studies/context.hpp"
 #include "problems/classic/classic_problems.hpp"
@@ -21,8 +22,8 @@
 namespace odobench {
 namespace {
 
-// Parameters this close to a bound, in units of the width of their box, count as on it: methods that step over bounds land
-// on them, others only come near.
+// Parameters this close to a bound, in units of the width of their box, count as on it: methods that step
+// over bounds land on them, others only come near.
 constexpr double kAtBound = 1e-6;
 
 std::vector<ParameterValue> parameter_values(const std::vector<ParameterInfo>& parameters, const Vector& x) {
@@ -54,8 +55,8 @@ std::map<std::string, double> budget_figures(const Budget& budget) {
   return figures;
 }
 
-// Every optimum that a method of many starts has seen: series optima.cost, optima.runs and optima.parameters (row by row), and
-// a note.
+// Every optimum that a method of many starts has seen: series optima.cost, optima.runs and optima.parameters
+// (row by row), and a note.
 void describe_optima(const std::vector<LocalOptimum>& optima, RunRecord& record) {
   if (optima.empty()) return;
   constexpr std::size_t kNamed = 10;
@@ -171,6 +172,22 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
   return record;
 }
 
+RunRecord study_record(const std::string& problem, const std::string& dataset, const std::string& label,
+                       const std::vector<ParameterInfo>& parameters, const Vector& values,
+                       const RunContext& context) {
+  RunRecord record;
+  record.problem = problem;
+  record.dataset = dataset;
+  record.label = label;
+  record.kind = "evaluation";
+  record.termination = "evaluated";
+  record.box = box_check_sum(parameters);
+  record.parameters = parameter_values(parameters, values);
+  record.context = context;
+  record.time_utc = utc_now();
+  return record;
+}
+
 namespace {
 
 // What belongs to the records of a folder, runs.jsonl first.
@@ -217,6 +234,14 @@ void RecordFile::replace(const std::vector<RunRecord>& records) {
   std::string text;
   for (const RunRecord& r : records) text += to_json_line(r) + "\n";
   file_->replace(text);
+}
+
+void save_study(const std::filesystem::path& folder, bool overwrite, const std::vector<RunRecord>& records,
+                const std::vector<Table>& tables, const char* option) {
+  InterruptGuard::remember();
+  RecordFile file(folder, overwrite, option);
+  for (const RunRecord& record : records) file.append(record);
+  save_tables(tables, folder);
 }
 
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {

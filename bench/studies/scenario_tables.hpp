@@ -8,8 +8,8 @@
 
 namespace odobench {
 
-// One row per known scenario, or for the name or file of one its drives and parameters. Throws std::invalid_argument on an
-// unknown name, DataError on a bad file.
+// One row per known scenario, or for the name or file of one its drives and parameters. Throws
+// std::invalid_argument on an unknown name, DataError on a bad file.
 std::vector<Table> scenario_tables(const std::string& scenario);
 
 }  // namespace odobench

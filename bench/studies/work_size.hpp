@@ -5,8 +5,8 @@
 
 namespace odobench {
 
-// Samples of simulated recordings: ticks of the odometry and of the motion capture. Measured on one core of 2020: 3
-// microseconds and 230 bytes each.
+// Samples of simulated recordings: ticks of the odometry and of the motion capture. Measured on one core of
+// 2020: 3 microseconds and 230 bytes each.
 inline constexpr double kMostSamplesHeld = 20e6;  // 4.6 GB
 inline constexpr double kMostSamplesMade = 4e9;   // three hours
 inline constexpr double kSecondsPerSample = 3e-6;
@@ -23,7 +23,8 @@ struct WorkSize {
   double made = 0;   // and altogether
 };
 
-// Throws std::invalid_argument "WHAT: about 1.3e+10 samples, expected at most ..." beyond one of the two limits.
+// Throws std::invalid_argument "WHAT: about 1.3e+10 samples, expected at most ..." beyond one of the two
+// limits.
 void require_size(const WorkSize& size);
 
 // The note on standard error for work of that many seconds, if it is long, unless `quiet`.

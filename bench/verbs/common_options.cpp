@@ -50,6 +50,11 @@ void add_json(CLI::App& app, bool& json) {
   app.add_flag("--json", json, "say on standard output, as JSON, what was written");
 }
 
+void add_study_folder(CLI::App& app, std::string& out, bool& overwrite) {
+  app.add_option("--out", out, "folder for records (runs.jsonl) and tables.*")->type_name("DIR");
+  app.add_flag("--overwrite", overwrite, "replace records that the folder holds");
+}
+
 void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
                const std::string& help) {
   app.add_option_function<std::string>(

@@ -29,6 +29,8 @@ void add_budget(CLI::App& app, Budget& budget);
 void add_format(CLI::App& app, std::string& format);
 // Of verbs that write files instead of printing tables.
 void add_json(CLI::App& app, bool& json);
+// --out and --overwrite of a study whose records and tables go to a folder.
+void add_study_folder(CLI::App& app, std::string& out, bool& overwrite);
 // A whole number between two limits.
 void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
                const std::string& help);

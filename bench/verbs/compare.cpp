@@ -127,8 +127,9 @@ bool draws_random_numbers(const RunRecord& record) {
   }
 }
 
-// "J:+0.1%,seconds:+20%,evaluations:+50": a sign that says which way is worse, a size, % for relative ones. Throws
-// std::invalid_argument that names the part, what was found and what was expected. Names of metrics are not checked.
+// "J:+0.1%,seconds:+20%,evaluations:+50": a sign that says which way is worse, a size, % for relative ones.
+// Throws std::invalid_argument that names the part, what was found and what was expected. Names of metrics
+// are not checked.
 std::vector<Gate> parse_gates(const std::vector<std::string>& lists) {
   std::vector<Gate> gates;
   for (const std::string& text : comma_items(lists)) {

@@ -1,4 +1,5 @@
-// `bench fuse`: wheel odometry of several parameter sets with several filters and synthetic sensors, compared.
+// `bench fuse`: wheel odometry of several parameter sets with several filters and synthetic sensors,
+// compared.
 #pragma once
 
 #include "bench/verbs/verb.hpp"

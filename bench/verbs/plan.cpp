@@ -15,11 +15,13 @@
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/studies/records.hpp"
 #include "bench/studies/work_size.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "problems/information/drive_planning.hpp"
 #include "problems/simulation/simulated_set.hpp"
-#include "solvers/options.hpp"
+#include "reports/kinds/planning/planning_tables.hpp"
 
 namespace odobench {
 namespace {
@@ -33,6 +35,8 @@ struct PlanOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   std::optional<InstructionSet> kernel;
+  std::string out;  // folder for the record and tables; empty: none
+  bool overwrite = false;
   std::string format = "console";
 };
 
@@ -55,11 +59,11 @@ void add_options(CLI::App& app, PlanOptions& o) {
             "simulations per drive that its noise is taken from [32]");
   add_noise_options(app, o.seed, o.threads);
   add_kernel(app, o.kernel, kLastBits);
+  add_study_folder(app, o.out, o.overwrite);
   add_format(app, o.format);
 }
 
 constexpr int kMostProposals = 60;
-constexpr std::size_t kShownComponents = 4;
 
 // What --drives and --candidates choose from: the scenario's own drives, then those known by name.
 std::vector<simulate::Drive> choices(const simulate::RecordingScenario& s) {
@@ -140,97 +144,9 @@ std::vector<DriveInformation> informations(const simulate::RecordingScenario& s,
   return list;
 }
 
-Cell percent(double relative) {
-  return std::isfinite(relative) ? significant_cell(100 * relative, 3) : text_cell("not at all");
-}
-
-Table parameter_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& parameters, double wanted) {
-  Table t{"plan.parameters",
-          "What these drives tell about each parameter",
-          {text_column("parameter"), number_column("deviation", "deviation", "%"),
-           number_column("absolute_deviation", "absolute deviation", "mm"), text_column("determined")},
-          {},
-          {}};
-  int count = 0;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const double sd = a.standard_deviations[static_cast<Eigen::Index>(i)];
-    const bool determined = sd <= wanted;
-    count += determined;
-    t.rows.push_back(
-        {text_cell(parameters[i].name), percent(sd),
-         std::isfinite(sd) ? significant_cell(1000 * sd * std::abs(parameters[i].nominal), 3) : Cell{},
-         text_cell(determined ? "yes" : "no")});
-  }
-  t.notes.push_back(
-      fmt::format("Standard deviation of a calibration by least squares, from simulated noise; determined: "
-                  "at most {:g} %; {} of {}.",
-                  100 * wanted, count, parameters.size()));
-  return t;
-}
-
-Table direction_table(const PlanAnalysis& a, const std::vector<ParameterInfo>& parameters) {
-  Table t{"plan.directions",
-          "Combinations from best to worst determined",
-          {text_column("rank"), number_column("singular_value"), number_column("deviation", "deviation", "%"),
-           text_column("direction")},
-          {},
-          {"Singular values of the noise-weighted Jacobian in relative parameters; direction: its largest "
-           "parts."}};
-  for (std::size_t k = 0; k < a.directions.size(); ++k) {
-    const Direction& d = a.directions[k];
-    std::vector<std::size_t> order(parameters.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto part = [&d](std::size_t i) { return std::abs(d.vector[static_cast<Eigen::Index>(i)]); };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t x, std::size_t y) { return part(x) > part(y); });
-    std::string text;
-    for (std::size_t i = 0; i < kShownComponents; ++i)
-      text += fmt::format("{}{:+.2f} {}", i > 0 ? " " : "", d.vector[static_cast<Eigen::Index>(order[i])],
-                          parameters[order[i]].name);
-    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), significant_cell(d.singular_value, 4),
-                      percent(d.standard_deviation), text_cell(text)});
-  }
-  return t;
-}
-
-Table undetermined_table(const PlanAnalysis& a, double wanted) {
-  Table t{"plan.undetermined",
-          "What stays undetermined",
-          {text_column("number"), text_column("combination")},
-          {},
-          {fmt::format(
-              "Changing these parameters together, those after 'against' the other way, changes nothing that "
-              "{:g} % precision would show.",
-              100 * wanted)}};
-  for (std::size_t k = 0; k < a.undetermined_words.size(); ++k)
-    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), text_cell(a.undetermined_words[k])});
-  return t;
-}
-
-Table proposal_table(const std::vector<Proposal>& proposals, const std::vector<DriveInformation>& drives,
-                     double wanted) {
-  Table t{"plan.proposals",
-          "Drives to add, best first",
-          {text_column("number"), text_column("drive"),
-           number_column("largest_deviation", "largest deviation", "%")},
-          {},
-          {}};
-  for (std::size_t k = 0; k < proposals.size(); ++k)
-    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), text_cell(drives[proposals[k].drive].name),
-                      percent(proposals[k].largest_deviation)});
-  const bool met = !proposals.empty() && proposals.back().largest_deviation <= wanted;
-  if (proposals.empty())
-    t.notes.push_back(fmt::format("Nothing to add: {:g} % is met.", 100 * wanted));
-  else
-    t.notes.push_back(met ? fmt::format("With these every parameter is known to {:g} %.", 100 * wanted)
-                          : fmt::format("{} drives do not reach {:g} %; the candidates lack something.",
-                                        proposals.size(), 100 * wanted));
-  return t;
-}
-
-// Planned drives that are no candidates stay as they are.
-Table proposals(const std::vector<DriveInformation>& drives, const Selection& selection,
-                const std::vector<ParameterInfo>& parameters, double wanted) {
+// Adds what is proposed to the record. Planned drives that are no candidates stay as they are.
+void put_proposals(const std::vector<DriveInformation>& drives, const Selection& selection,
+                   const std::vector<ParameterInfo>& parameters, double wanted, RunRecord& record) {
   std::vector<DriveInformation> candidates;
   std::vector<int> counts;
   DriveInformation fixed{"", Matrix::Zero(12, 12), Vector::Zero(12), Matrix::Zero(12, 12)};
@@ -244,11 +160,14 @@ Table proposals(const std::vector<DriveInformation>& drives, const Selection& se
     fixed.scatter += selection.counts[i] * drives[i].scatter;
     fixed.bias += selection.counts[i] * drives[i].bias;
   }
-  return proposal_table(propose_drives(candidates, counts, fixed, parameters, wanted, kMostProposals),
-                        candidates, wanted);
+  for (const Proposal& p : propose_drives(candidates, counts, fixed, parameters, wanted, kMostProposals)) {
+    record.notes.push_back(kProposedNote + candidates[p.drive].name);
+    record.series["proposed"].push_back(p.largest_deviation);
+  }
 }
 
-// The replicas of a drive are in memory together, of as many drives as there are threads, without the logs they are made of.
+// The replicas of a drive are in memory together, of as many drives as there are threads, without the logs
+// they are made of.
 constexpr double kRecordingShare = 0.25;
 
 void require_and_announce(simulate::RecordingScenario s, const PlanOptions& o) {
@@ -263,8 +182,38 @@ void require_and_announce(simulate::RecordingScenario s, const PlanOptions& o) {
   announce(size, false);
 }
 
+// The relative standard deviations and directions of the plan; what is not determined has no statistic.
+RunRecord plan_record(const simulate::RecordingScenario& s, const PlanAnalysis& a,
+                      const std::vector<ParameterInfo>& parameters, const PlanOptions& o,
+                      InstructionSet kernel) {
+  Vector nominal(static_cast<Eigen::Index>(parameters.size()));
+  for (Eigen::Index i = 0; i < nominal.size(); ++i)
+    nominal[i] = parameters[static_cast<std::size_t>(i)].nominal;
+  RunRecord record = study_record(kPlanningProblem, s.name, "plan", parameters, nominal,
+                                  run_context(thread_count(o.threads), kernel));
+  record.message = "what calibrations on these drives would determine";
+  record.seed = record.base_seed = o.seed;
+  record.statistics["wanted"] = o.wanted;
+  double determined = 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double deviation = a.standard_deviations[static_cast<Eigen::Index>(i)];
+    record.series["standard_deviations"].push_back(deviation);
+    if (std::isfinite(deviation)) record.statistics["deviation." + parameters[i].name] = deviation;
+    determined += deviation <= o.wanted ? 1 : 0;
+  }
+  record.statistics["determined"] = determined;
+  for (const Direction& d : a.directions) {
+    record.series["singular_values"].push_back(d.singular_value);
+    record.series["direction_deviations"].push_back(d.standard_deviation);
+    for (const double part : d.vector) record.series["directions"].push_back(part);
+  }
+  for (const std::string& words : a.undetermined_words) record.notes.push_back(kUndeterminedNote + words);
+  return record;
+}
+
 ExitCode plan_command(const PlanOptions& o) {
   const Format format = parse_format(o.format);
+  if (!o.out.empty()) require_no_records(o.out, o.overwrite);
   const InstructionSet kernel = kernel_in_force(o.kernel);
   const simulate::RecordingScenario scenario = load_recording_scenario(o.robot);
   const Selection selection = select(scenario, o);
@@ -276,10 +225,10 @@ ExitCode plan_command(const PlanOptions& o) {
   const std::vector<ParameterInfo> parameters = robot_parameters(scenario.robot);
   const std::vector<DriveInformation> drives = informations(scenario, selection, o, kernel);
   const PlanAnalysis analysis = analyse_drives(drives, selection.counts, parameters, o.wanted);
-  std::vector<Table> tables = {parameter_table(analysis, parameters, o.wanted),
-                               direction_table(analysis, parameters)};
-  if (!analysis.undetermined_words.empty()) tables.push_back(undetermined_table(analysis, o.wanted));
-  if (!o.candidates.empty()) tables.push_back(proposals(drives, selection, parameters, o.wanted));
+  RunRecord record = plan_record(scenario, analysis, parameters, o, kernel);
+  if (!o.candidates.empty()) put_proposals(drives, selection, parameters, o.wanted, record);
+  const std::vector<Table> tables = planning_tables(record, !o.candidates.empty());
+  if (!o.out.empty()) save_study(o.out, o.overwrite, {record}, tables);
   print_tables(tables, format);
   return ExitCode::Success;
 }

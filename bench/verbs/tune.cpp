@@ -14,8 +14,10 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/studies/cells.hpp"
+#include "bench/studies/context.hpp"
 #include "bench/studies/fusion_runs.hpp"
 #include "bench/studies/parameter_sets.hpp"
+#include "bench/studies/records.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "problems/fusion/sensors_file.hpp"
 #include "problems/fusion/tuning_problem.hpp"
@@ -34,7 +36,8 @@ struct TuneOptions {
   std::int64_t max_evaluations = 200;
   std::optional<std::uint64_t> seed;
   std::optional<InstructionSet> kernel;
-  std::string out;  // sensors file to write; empty: none
+  std::string out;      // sensors file to write; empty: none
+  std::string records;  // folder for records and tables; empty: none
   bool overwrite = false;
   std::string format = "console";
 };
@@ -64,7 +67,8 @@ void add_options(CLI::App& app, TuneOptions& o) {
       ->type_name("N");
   add_kernel(app, o.kernel, kNamedOnly);
   app.add_option("--out", o.out, "write the sensors file with the best sigmas")->type_name("FILE");
-  app.add_flag("--overwrite", o.overwrite, "replace a file of --out that is there");
+  app.add_option("--records", o.records, "folder for records (runs.jsonl) and tables.*")->type_name("DIR");
+  app.add_flag("--overwrite", o.overwrite, "replace what --out and --records find there");
   add_format(app, o.format);
 }
 
@@ -151,8 +155,8 @@ void write_sensors(const TuneOptions& options, const FusionOptions& fusion,
   write_file(options.out, root.dump(2) + "\n", existing_files(options.overwrite));
 }
 
-// A sigma that the cost does not depend on (the wheels' velocity where only headings are measured) ends anywhere: it goes
-// back to the given one. Returns the names.
+// A sigma that the cost does not depend on (the wheels' velocity where only headings are measured) ends
+// anywhere: it goes back to the given one. Returns the names.
 std::string restore_flat(const FusionTuningProblem& model, const Vector& given, double cost, Vector& x) {
   constexpr double kFlat = 1e-7;
   std::string names;
@@ -180,6 +184,67 @@ TuningObjective objective_of(const std::string& name) {
   throw std::invalid_argument(fmt::format("--objective={}: expected likelihood or error", name));
 }
 
+// The sensors file with the sigmas of the setting that costs least.
+void write_best(const TuneOptions& options, const FusionTuningProblem& model, const SensorsFile& sensors,
+                const std::vector<Setting>& settings) {
+  const auto best = std::min_element(settings.begin(), settings.end(),
+                                     [](const Setting& a, const Setting& b) { return a.cost < b.cost; });
+  FusionOptions fusion = sensors.options;
+  std::vector<SensorStream> streams;
+  for (const SyntheticSensor& sensor : sensors.sensors) streams.push_back(sensor.stream);
+  model.apply(best->x, fusion, streams);
+  write_sensors(options, fusion, streams);
+}
+
+// One record per setting: its cost, and how it did on the drives that judge.
+std::vector<RunRecord> tuning_records(const Problem& problem, const std::vector<Setting>& settings,
+                                      const LoadedProblem& loaded, const TuneOptions& options,
+                                      std::uint64_t seed) {
+  const RunContext context = run_context(1, kernel_in_force(options.kernel));
+  std::vector<RunRecord> records;
+  for (const Setting& s : settings) {
+    RunRecord record = study_record("tuning:" + options.objective, loaded.dataset_name(), s.label,
+                                    problem.parameters(), s.x, context);
+    record.dataset_sha256 = loaded.dataset_sha256;
+    record.seed = record.base_seed = seed;
+    record.message = s.held_out.row.verdict;
+    if (!s.stop.empty()) record.termination = s.stop;
+    record.cost = s.cost;
+    record.evaluations = record.cost_evaluations = static_cast<std::int64_t>(s.evaluations);
+    record.errors = s.held_out.errors;
+    record.statistics = {{"rmse_position", s.held_out.row.rmse_position},
+                         {"rmse_heading", s.held_out.row.rmse_heading},
+                         {"nees_mean", s.held_out.row.mean_nees}};
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+// The given setting, then what each solver found from there.
+std::vector<Setting> fitted(const Problem& problem, const FusionTuningProblem& model,
+                            const std::vector<SolverSpec>& solvers, const TuneOptions& options,
+                            std::uint64_t seed, const std::string& dataset,
+                            std::vector<std::string>& remarks) {
+  std::vector<Setting> settings{{"given", problem.start(), model.cost(problem.start()), 1, "", {}}};
+  for (const SolverSpec& spec : solvers) {
+    SolveOptions solve_options;
+    solve_options.budget.max_evaluations = options.max_evaluations;
+    solve_options.seed = derive_seed(seed, {"tune", dataset, spec.text()});
+    const Result result = solve(problem, spec, problem.start(), solve_options);
+    if (!result.usable()) {
+      warn(fmt::format("{}: {}", spec.text(), result.message));
+      continue;
+    }
+    Vector x = result.x;
+    const std::string flat = restore_flat(model, problem.start(), result.cost, x);
+    if (!flat.empty())
+      remarks.push_back(fmt::format("{}: the cost does not depend on {}, kept as given.", spec.text(), flat));
+    const auto evaluations = static_cast<double>(result.counts.total());
+    settings.push_back({spec.text(), x, result.cost, evaluations, to_string(result.termination), {}});
+  }
+  return settings;
+}
+
 ExitCode tune_command(const TuneOptions& options) {
   const Format format = parse_format(options.format);
   const FilterChoice filter = tuned_filter(options.filter);
@@ -188,6 +253,7 @@ ExitCode tune_command(const TuneOptions& options) {
   const std::vector<SolverSpec> solvers = resolve_solvers(
       options.solvers.empty() ? std::vector<std::string>{"nlopt:bobyqa"} : options.solvers, notes);
   refuse_existing("--out", options.out, options.overwrite);
+  if (!options.records.empty()) require_no_records(options.records, options.overwrite, "--records");
   SensorsFile sensors = read_sensors(options.sensors);
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(options.data, kernel_in_force(options.kernel));
@@ -210,45 +276,22 @@ ExitCode tune_command(const TuneOptions& options) {
     for (std::vector<SensorStream>& one : streams) model->apply(x, changed.options, one);
     return fuse_all(judge, sets[0].values, filter, changed, streams, 0);
   };
-  std::vector<Setting> settings{{"given", problem.start(), model->cost(problem.start()), 1, "", {}}};
   std::vector<std::string> remarks;
-  for (const SolverSpec& spec : solvers) {
-    SolveOptions solve_options;
-    solve_options.budget.max_evaluations = options.max_evaluations;
-    solve_options.seed = derive_seed(seed, {"tune", loaded.dataset_name(), spec.text()});
-    const Result result = solve(problem, spec, problem.start(), solve_options);
-    if (!result.usable()) {
-      warn(fmt::format("{}: {}", spec.text(), result.message));
-      continue;
-    }
-    Vector x = result.x;
-    const std::string flat = restore_flat(*model, problem.start(), result.cost, x);
-    if (!flat.empty())
-      remarks.push_back(fmt::format("{}: the cost does not depend on {}, kept as given.", spec.text(), flat));
-    settings.push_back({spec.text(),
-                        x,
-                        result.cost,
-                        static_cast<double>(result.counts.total()),
-                        to_string(result.termination),
-                        {}});
-  }
+  std::vector<Setting> settings =
+      fitted(problem, *model, solvers, options, seed, loaded.dataset_name(), remarks);
   for (Setting& setting : settings) setting.held_out = judged(setting.x);
   if (settings.size() == 1) {
     warn("not one solver gave a result");
     return ExitCode::CheckFailed;
   }
-  if (!options.out.empty()) {
-    const auto best = std::min_element(settings.begin(), settings.end(),
-                                       [](const Setting& a, const Setting& b) { return a.cost < b.cost; });
-    FusionOptions fusion = sensors.options;
-    std::vector<SensorStream> streams;
-    for (const SyntheticSensor& sensor : sensors.sensors) streams.push_back(sensor.stream);
-    model->apply(best->x, fusion, streams);
-    write_sensors(options, fusion, streams);
-  }
-  print_tables({sensor_table(sensors, seed, loaded.dataset_name()), sigma_table(problem, settings, remarks),
-                result_table(settings, s, options.objective)},
-               format);
+  if (!options.out.empty()) write_best(options, *model, sensors, settings);
+  const std::vector<Table> tables{sensor_table(sensors, seed, loaded.dataset_name()),
+                                  sigma_table(problem, settings, remarks),
+                                  result_table(settings, s, options.objective)};
+  if (!options.records.empty())
+    save_study(options.records, options.overwrite, tuning_records(problem, settings, loaded, options, seed),
+               tables, "--records");
+  print_tables(tables, format);
   return ExitCode::Success;
 }
 

@@ -1,5 +1,5 @@
-// `bench tune`: the noise parameters of a filter, fitted by solvers on the first drive of each trajectory and judged on
-// the others.
+// `bench tune`: the noise parameters of a filter, fitted by solvers on the first drive of each trajectory and
+// judged on the others.
 #pragma once
 
 #include "bench/verbs/verb.hpp"

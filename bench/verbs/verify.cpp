@@ -15,10 +15,13 @@
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/studies/context.hpp"
 #include "bench/studies/parameter_sets.hpp"
+#include "bench/studies/records.hpp"
 #include "bench/studies/work_size.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "problems/simulation/simulated_set.hpp"
+#include "reports/kinds/verification/verification_tables.hpp"
 #include "reports/statistics/statistics.hpp"
 
 namespace odobench {
@@ -31,6 +34,8 @@ struct VerifyOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   std::optional<InstructionSet> kernel;
+  std::string out;  // folder for records and tables; empty: none
+  bool overwrite = false;
   std::string format = "console";
 };
 
@@ -44,6 +49,7 @@ void add_options(CLI::App& app, VerifyOptions& o) {
   add_count(app, "--repeat", o.repeat, 1, 10000, "times that all drives are driven [10]");
   add_noise_options(app, o.seed, o.threads);
   add_kernel(app, o.kernel, kNamedOnly);
+  add_study_folder(app, o.out, o.overwrite);
   add_format(app, o.format);
 }
 
@@ -51,6 +57,7 @@ constexpr int kErrorDigits = 6;  // as in the thesis
 
 // One repeat of all drives with one set.
 struct VerifyOutcome {
+  std::vector<RecordingError> recordings;
   std::vector<TrajectoryErrors> errors;
   Totals totals;
   // Mean distance of the true end from the reference's, m, and of the headings, rad, by trajectory.
@@ -94,6 +101,7 @@ VerifyOutcome drive_once(const simulate::RecordingScenario& s, const Vector& bel
     errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
   outcome.errors = error_statistics(errors);
   outcome.totals = error_totals(outcome.errors);
+  outcome.recordings = std::move(errors);
   return outcome;
 }
 
@@ -225,8 +233,40 @@ Table arrival_table(const TableMaker& maker, const simulate::RecordingScenario& 
   return table;
 }
 
+// One record per set: the errors of every drive of every repeat, and where the robot really ended.
+std::vector<RunRecord> verification_records(const simulate::RecordingScenario& s,
+                                            const std::vector<ParameterSet>& sets, const Outcomes& outcomes,
+                                            const VerifyOptions& o, InstructionSet kernel) {
+  const RunContext context = run_context(thread_count(o.threads), kernel);
+  std::vector<RunRecord> records;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    RunRecord record = study_record(kVerificationProblem, s.name, sets[i].label, robot_parameters(s.robot),
+                                    sets[i].values, context);
+    record.message = fmt::format("errors on {} new drives of each trajectory, steered by these parameters",
+                                 o.repeat * s.repetitions);
+    record.seed = record.base_seed = o.seed;
+    for (std::size_t k = 0; k < outcomes[i].size(); ++k)
+      for (RecordingError e : outcomes[i][k].recordings) {
+        e.recording += fmt::format("#{}", k + 1);
+        e.repetition += static_cast<int>(k) * s.repetitions;
+        record.errors.push_back(std::move(e));
+      }
+    for (std::size_t t = 0; t < s.drives.size(); ++t) {
+      const auto at = [&](std::size_t v) {
+        return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
+            .mean;
+      };
+      record.statistics["arrival_position." + s.drives[t].name] = at(0);
+      record.statistics["arrival_heading." + s.drives[t].name] = at(1);
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
 ExitCode verify_command(const VerifyOptions& o) {
   const Format format = parse_format(o.format);
+  if (!o.out.empty()) require_no_records(o.out, o.overwrite);
   const InstructionSet kernel = kernel_in_force(o.kernel);
   const simulate::RecordingScenario scenario = load_recording_scenario(o.scenario);
   if (!scenario.control.closed_loop)
@@ -263,6 +303,8 @@ ExitCode verify_command(const VerifyOptions& o) {
     tables.push_back(trajectory_table(maker, scenario.drives[t], t));
   tables.push_back(totals_table(maker, o.repeat));
   tables.push_back(arrival_table(maker, scenario));
+  if (!o.out.empty())
+    save_study(o.out, o.overwrite, verification_records(scenario, sets, outcomes, o, kernel), tables);
   print_tables(tables, format);
   return ExitCode::Success;
 }

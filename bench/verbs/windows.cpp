@@ -98,7 +98,8 @@ double value_at(const EntropyWindow& window, const Vector& t, EntropyState& stat
   return hamiltonian(window, values, state);
 }
 
-// H at the solution of a search, worked out like H of every result: what is the same t has the same H to the last bit.
+// H at the solution of a search, worked out like H of every result: what is the same t has the same H to the
+// last bit.
 double optimum(const EntropyWindow& window, const BlockQuadratic& cost, BlockSearch& search) {
   const Vector g = cost.stacked_g();
   Vector x(g.size());

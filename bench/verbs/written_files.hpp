@@ -10,7 +10,8 @@
 
 namespace odobench {
 
-// "written": path, size in bytes and SHA-256 of each file, read back from the disc. Throws DataError when one cannot be read.
+// "written": path, size in bytes and SHA-256 of each file, read back from the disc. Throws DataError when one
+// cannot be read.
 Table written_table(const std::vector<std::filesystem::path>& files);
 
 // "dataset": one row of name, counts and duration.

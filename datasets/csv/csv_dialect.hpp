@@ -17,7 +17,8 @@ struct CsvDialect {
   std::string text() const;
 };
 
-// The separator that divides this header line most often outside quotes: ; or tab or comma, else blanks, else `usual`.
+// The separator that divides this header line most often outside quotes: ; or tab or comma, else blanks, else
+// `usual`.
 char find_separator(std::string_view header, char usual);
 
 // "sep=;" or "sep=": true, and the separator where one is named.
@@ -29,9 +30,9 @@ bool comment_line(std::string_view line, std::string_view& content);
 // A decimal number, with point or comma.
 bool looks_like_number(std::string_view field);
 
-// Splits a line without its break. Blanks around fields and the quotes around "a field" are taken away (blanks inside
-// quotes stay); a field with doubled quotes inside is written to `unescaped`. The views are into `line` or `unescaped`.
-// False where a quote is not closed.
+// Splits a line without its break. Blanks around fields and the quotes around "a field" are taken away
+// (blanks inside quotes stay); a field with doubled quotes inside is written to `unescaped`. The views are
+// into `line` or `unescaped`. False where a quote is not closed.
 bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
                   std::deque<std::string>& unescaped);
 

@@ -32,7 +32,8 @@ class CsvRow {
   // The last line read had no line break.
   bool unfinished() const { return unfinished_; }
   const CsvDialect& dialect() const { return dialect_; }
-  // How the file was read, for messages about columns that are missing: "; read as separated by ';', decimal comma".
+  // How the file was read, for messages about columns that are missing: "; read as separated by ';', decimal
+  // comma".
   std::string reading() const;
 
  protected:
@@ -43,9 +44,11 @@ class CsvRow {
   // The next line without its break; false at the end. Sets unfinished_ for a last line without a break.
   virtual bool take_line(std::string_view& line) = 0;
 
-  // Passes over a byte order mark, "sep=", comments and blank lines, and takes the header; false where there is none.
+  // Passes over a byte order mark, "sep=", comments and blank lines, and takes the header; false where there
+  // is none.
   bool take_header();
-  // Takes the row of this line; false where it is a comment. DataError when its number of fields differs from the header's.
+  // Takes the row of this line; false where it is a comment. DataError when its number of fields differs from
+  // the header's.
   bool take_row(std::string_view line);
   // The row that take_header() had to read, if any.
   bool take_waiting_row();

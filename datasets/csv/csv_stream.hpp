@@ -1,5 +1,5 @@
-// Rows of a separated text file with one header line, read piece by piece: memory does not depend on the file's
-// length, and pipes work as well as files.
+// Rows of a separated text file with one header line, read piece by piece: memory does not depend on the
+// file's length, and pipes work as well as files.
 #pragma once
 
 #include <atomic>
@@ -11,16 +11,18 @@
 
 namespace odobench {
 
-// Same rules as CsvTable: the dialect is found in the header (datasets/csv/csv_dialect.hpp), a carriage return before the
-// line's end and blank lines at the end of the file are ignored, a last line without a line break must have all fields.
+// Same rules as CsvTable: the dialect is found in the header (datasets/csv/csv_dialect.hpp), a carriage
+// return before the line's end and blank lines at the end of the file are ignored, a last line without a line
+// break must have all fields.
 class CsvStream : public CsvRow {
  public:
   // Longest line accepted [bytes]: what has no line break at all must not fill the memory.
   static constexpr std::size_t kLongestLine = 1 << 20;
 
-  // `separator`: where the header has none. Opens the file ("-" is standard input) and reads the header line. Throws DataError when it cannot be read
-  // or is empty. Once `interrupt` (may be null) is set, the file ends as soon as the rows already read are used up,
-  // also while a pipe delivers nothing (before the header: without columns).
+  // `separator`: where the header has none. Opens the file ("-" is standard input) and reads the header line.
+  // Throws DataError when it cannot be read or is empty. Once `interrupt` (may be null) is set, the file ends
+  // as soon as the rows already read are used up, also while a pipe delivers nothing (before the header:
+  // without columns).
   CsvStream(const std::filesystem::path& file, char separator, const std::atomic<bool>* interrupt = nullptr);
   ~CsvStream();
   CsvStream(const CsvStream&) = delete;

@@ -5,8 +5,9 @@
 
 namespace odobench {
 
-// Walks over the rows of a text that outlives it, in whatever dialect its header shows (datasets/csv/csv_dialect.hpp). A carriage return before the line's end and blank lines at
-// the end of the text are ignored; a blank line between rows is a row with one empty field.
+// Walks over the rows of a text that outlives it, in whatever dialect its header shows
+// (datasets/csv/csv_dialect.hpp). A carriage return before the line's end and blank lines at the end of the
+// text are ignored; a blank line between rows is a row with one empty field.
 class CsvTable : public CsvRow {
  public:
   // Reads the header line; no text at all is a DataError. `file` is the name in messages.

@@ -23,8 +23,9 @@ struct EntropyConstants {
   friend bool operator==(const EntropyConstants&, const EntropyConstants&) = default;
 };
 
-// Measurements of one sample. Accelerations are in the filter frame, whose x axis goes through wheels 1 and 3: the
-// robot frame turned by -alpha. The rotation counts positive when wheels 1 and 2 go forwards, 3 and 4 backwards.
+// Measurements of one sample. Accelerations are in the filter frame, whose x axis goes through wheels 1 and
+// 3: the robot frame turned by -alpha. The rotation counts positive when wheels 1 and 2 go forwards, 3 and 4
+// backwards.
 struct EntropySample {
   std::array<double, 4> wheel{};     // m per step, signed, along the heading of the wheel
   std::array<double, 4> steering{};  // rad, heading of the wheel in the robot frame

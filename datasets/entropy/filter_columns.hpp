@@ -1,4 +1,5 @@
-// Which column of a file holds what: canonical names with units ("enc1_m"), or the names a mapping gives instead.
+// Which column of a file holds what: canonical names with units ("enc1_m"), or the names a mapping gives
+// instead.
 #pragma once
 
 #include <map>
@@ -22,8 +23,8 @@ class ColumnFinder {
   ColumnFinder(const CsvRow& row, const ColumnMapping& mapping, const std::vector<std::string>& known)
       : row_(row), mapping_(mapping), known_(known) {}
 
-  // The column of this canonical name; nothing when the file has none. DataError when it has two, and when the
-  // mapping names a column that is not there.
+  // The column of this canonical name; nothing when the file has none. DataError when it has two, and when
+  // the mapping names a column that is not there.
   std::optional<std::size_t> find(const std::string& name) const;
   // The first of several spellings that is there.
   std::optional<std::size_t> find_any(const std::vector<std::string>& names) const;

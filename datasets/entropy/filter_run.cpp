@@ -150,7 +150,8 @@ void FilterRunReader::check_time(double time) {
   const double step = time - last_time_;
   if (!(step > 0))
     stream_.fail(fmt::format("found the time {} s after {} s, expected it to increase", time, last_time_));
-  // dt_ is 0 until the second row says what it is. Times of long runs are written with few digits after the point.
+  // dt_ is 0 until the second row says what it is. Times of long runs are written with few digits after the
+  // point.
   const double rounding = 1e-12 * std::abs(time);
   if (dt_ > 0 && std::abs(step - dt_) > options_.time_tolerance * dt_ + rounding)
     stream_.fail(fmt::format("found a time step of {:.9g} s, expected {:.9g} s within {:g} %", step, dt_,

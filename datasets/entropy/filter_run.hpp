@@ -1,15 +1,17 @@
-// The input of the relative-entropy filter, row by row, with memory independent of its length. Columns, extra ones are
-// passed over:
+// The input of the relative-entropy filter, row by row, with memory independent of its length. Columns, extra
+// ones are passed over:
 //   time_s                           s; optional when dt is given
-//   enc1_m .. enc4_m                 m, displacement of each wheel along its heading during the step that ends at the row
+//   enc1_m .. enc4_m                 m, displacement of each wheel along its heading during the step that
+//   ends at the row
 //   ax_m_s2, ay_m_s2                 m/s^2
 //   exactly one rotation, counting as in the file (usually counter-clockwise):
 //     yaw_step_deg, yaw_step_rad     during the step;  yaw_rate_deg_s, yaw_rate_rad_s   times dt
-//     yaw_deg, yaw_rad               a heading: differenced, the difference taken to (-180, 180] deg; the first row only
+//     yaw_deg, yaw_rad               a heading: differenced, the difference taken to (-180, 180] deg; the
+//     first row only
 //                                    gives the heading that the second one is compared with
 //   psi1_deg .. psi4_deg, or _rad    heading of each wheel in the robot; all or none (0)
-// A file whose first column is called "Laikas" has the layout of the thesis' program (T. Stirblys, Kaunas 2015,
-// Appendix 3): Laikas, enc1 .. enc4, ax, ay, theta, where an option says what theta means.
+// A file whose first column is called "Laikas" has the layout of the thesis' program (T. Stirblys, Kaunas
+// 2015, Appendix 3): Laikas, enc1 .. enc4, ax, ay, theta, where an option says what theta means.
 #pragma once
 
 #include <array>
@@ -46,9 +48,10 @@ struct FilterRow {
 
 class FilterRunReader {
  public:
-  // Opens the file ("-": standard input) and reads its header and the rows that dt needs. Throws DataError with
-  // file:line, here and from next(), on a missing or doubled column, a value that is no finite number, times that do not
-  // increase or differ from dt by more than the tolerance, fewer than `least_rows` rows, a last line cut off.
+  // Opens the file ("-": standard input) and reads its header and the rows that dt needs. Throws DataError
+  // with file:line, here and from next(), on a missing or doubled column, a value that is no finite number,
+  // times that do not increase or differ from dt by more than the tolerance, fewer than `least_rows` rows, a
+  // last line cut off.
   FilterRunReader(const std::filesystem::path& file, const FilterRunOptions& options);
 
   bool next(FilterRow& row);

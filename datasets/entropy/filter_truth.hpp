@@ -1,5 +1,5 @@
-// What really happened in a run of the relative-entropy filter, row by row beside its input. Columns, in the filter's frame
-// (its x axis goes through wheels 1 and 3), with or without the unit in the name:
+// What really happened in a run of the relative-entropy filter, row by row beside its input. Columns, in the
+// filter's frame (its x axis goes through wheels 1 and 3), with or without the unit in the name:
 //   sx_m, sy_m                 m, displacement of the centre in the step that ends at the row
 //   dtheta_deg or dtheta_rad   rotation in that step, counting like the input's
 //   ax_m_s2, ay_m_s2           rate at which the frame's components of the velocity change

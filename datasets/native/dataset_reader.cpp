@@ -109,8 +109,8 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
                             fmt::format("{} as in time_us", recording.size()));
 }
 
-// FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither by its text nor
-// through a link.
+// FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither
+// by its text nor through a link.
 fs::path file_below(const fs::path& folder, const JsonNode& node) {
   const std::string text = node.text();
   const fs::path relative = text;

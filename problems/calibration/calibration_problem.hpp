@@ -1,14 +1,16 @@
 // Odometry calibration of a robot with four independently steered and driven wheels (4WIS4WID), the batch
-// least-squares problem of J. Vitko, master's thesis, University of Zagreb, 2024 (equation numbers are the thesis').
+// least-squares problem of J. Vitko, master's thesis, University of Zagreb, 2024 (equation numbers are the
+// thesis').
 //
-// Parameters z = (a1..a4, b1..b4, r1..r4), metres: wheel i stands at (a_i, b_i) in the body frame (x forward, y
-// left), its radius is r_i. With steering angle d_i [rad], wheel speed w_i [rad/s], v_i = r_i w_i:
+// Parameters z = (a1..a4, b1..b4, r1..r4), metres: wheel i stands at (a_i, b_i) in the body frame (x forward,
+// y left), its radius is r_i. With steering angle d_i [rad], wheel speed w_i [rad/s], v_i = r_i w_i:
 //     vx    = 1/4 sum_i cos(d_i + theta) v_i                                                (2.16)
 //     vy    = 1/4 sum_i sin(d_i + theta) v_i
 //     omega = sum_i W_i v_i,  W_i = (-b_i cos d_i + a_i sin d_i) / (4 (a_i^2 + b_i^2))      (2.17)
 //     q[k+1] = q[k] + (t[k+1] - t[k]) (vx, vy, omega)[k],  q[0] = (0, 0, theta_ref[0])      (3.1)-(3.2)
 //     J(z) = sum over recordings, k >= 1 of (x-x_ref)^2 + (y-y_ref)^2 + (theta-theta_ref)^2 (3.3)
-// SI units without weights: metres and radians are mixed as in the thesis. J is dimensionless by that convention.
+// SI units without weights: metres and radians are mixed as in the thesis. J is dimensionless by that
+// convention.
 #pragma once
 
 #include <memory>
@@ -27,7 +29,8 @@ struct PoseTrack {
   std::vector<double> x, y, theta;
 };
 
-// Largest absolute error of one recording over its samples: |x-x_ref|, |y-y_ref| [m], |theta-theta_ref| [rad].
+// Largest absolute error of one recording over its samples: |x-x_ref|, |y-y_ref| [m], |theta-theta_ref|
+// [rad].
 struct MaxErrors {
   std::string recording, trajectory;
   int repetition = 0;
@@ -40,16 +43,17 @@ PoseTrack integrate(const Recording& recording, const ConstVectorRef& z);
 double cost(std::span<const Recording> recordings, const ConstVectorRef& z);
 }  // namespace direct
 
-// The structured form: with P_i = r_i b_i / (a_i^2+b_i^2) and Q_i = r_i a_i / (a_i^2+b_i^2) the heading is linear in
-// (P, Q) and the body velocity is linear in r, so an evaluation needs no trigonometry of the steering angles, the
-// heading part of J is a constant quadratic form, and the Jacobian is analytic.
-// Evaluates J, residuals (3 per sample k >= 1, order x, y, theta, recording by recording), Jacobian, normal equations
-// in one pass, and batches of candidates. Immutable; every member may be called from several threads.
+// The structured form: with P_i = r_i b_i / (a_i^2+b_i^2) and Q_i = r_i a_i / (a_i^2+b_i^2) the heading is
+// linear in (P, Q) and the body velocity is linear in r, so an evaluation needs no trigonometry of the
+// steering angles, the heading part of J is a constant quadratic form, and the Jacobian is analytic.
+// Evaluates J, residuals (3 per sample k >= 1, order x, y, theta, recording by recording), Jacobian, normal
+// equations in one pass, and batches of candidates. Immutable; every member may be called from several
+// threads.
 class CalibrationProblem {
  public:
-  // parameters: the twelve, in the order above. `kernel`: what evaluates the structured form; it decides the last bits of
-  // cost, normal equations and batches. Throws std::invalid_argument on another count, on no recordings, on a recording
-  // with fewer than two samples, or on a kernel that the processor does not have.
+  // parameters: the twelve, in the order above. `kernel`: what evaluates the structured form; it decides the
+  // last bits of cost, normal equations and batches. Throws std::invalid_argument on another count, on no
+  // recordings, on a recording with fewer than two samples, or on a kernel that the processor does not have.
   CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings,
                      InstructionSet kernel = widest_instruction_set());
   ~CalibrationProblem();
@@ -64,8 +68,10 @@ class CalibrationProblem {
   void residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const;
   void normal_equations(const ConstVectorRef& z, NormalEquations& out) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
-  // F + 2 sqrt(F J(z)), F = (2 eps)^2 sum k (x_k^2 + y_k^2 + theta_k^2) over the references: k additions leave an error of about
-  // 2 eps sqrt(k) |x_k| in a pose. Sums of squares only: what is left never exceeds that of the equations as written.
+  // F + 2 sqrt(F J(z)), F = (2 eps)^2 sum k (x_k^2 + y_k^2 + theta_k^2) over the references: k additions
+  // leave an error of about
+  // 2 eps sqrt(k) |x_k| in a pose. Sums of squares only: what is left never exceeds that of the equations as
+  // written.
   double rounding_floor(const ConstVectorRef& z) const;
 
   const std::vector<Recording>& recordings() const { return recordings_; }

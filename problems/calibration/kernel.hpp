@@ -4,10 +4,11 @@
 //     data[(step * kStreams + stream) * width + lane]
 // with the streams C_1..C_4, S_1..S_4 (C_i = dt w_i cos(d_i) / 4, S_i = dt w_i sin(d_i) / 4, in rad) and the
 // reference position after the step relative to the segment's start, x and y [m].
-// Linear parameters s = (r_1..r_4, P_1..P_4, Q_1..Q_4), P_i = r_i b_i/(a_i^2+b_i^2), Q_i = r_i a_i/(a_i^2+b_i^2):
+// Linear parameters s = (r_1..r_4, P_1..P_4, Q_1..Q_4), P_i = r_i b_i/(a_i^2+b_i^2), Q_i = r_i
+// a_i/(a_i^2+b_i^2):
 //     u = sum r_i (C_i, S_i),   dtheta = sum -P_i C_i + Q_i S_i,   (dx, dy) = R(theta) u.
-// Inside a segment the heading is advanced by rotating (cos, sin) by dtheta; segments begin from exact prefix sums.
-// Everything is relative to the segment's start, so segments are independent of each other.
+// Inside a segment the heading is advanced by rotating (cos, sin) by dtheta; segments begin from exact prefix
+// sums. Everything is relative to the segment's start, so segments are independent of each other.
 #pragma once
 
 namespace odobench {
@@ -21,7 +22,8 @@ inline constexpr int kLinear = 12;
 inline constexpr int kHeading = 8;                             // P_1..P_4, Q_1..Q_4
 inline constexpr int kTriangle = kLinear * (kLinear + 1) / 2;  // lower triangle, row by row
 inline constexpr int kMaxWidth = 8;
-// Largest |dtheta| of a step for which the rotation polynomial is exact to 1e-15; beyond it the `exact` form is used.
+// Largest |dtheta| of a step for which the rotation polynomial is exact to 1e-15; beyond it the `exact` form
+// is used.
 inline constexpr double kMaxAngle = 0.3;
 
 struct Block {

@@ -1,5 +1,6 @@
-// Templates behind kernel.hpp, compiled once per vector width. Included by kernel_*.cpp only. Everything has internal
-// linkage and uses no inline function of another header, so that no wide instruction leaks into code run elsewhere.
+// Templates behind kernel.hpp, compiled once per vector width. Included by kernel_*.cpp only. Everything has
+// internal linkage and uses no inline function of another header, so that no wide instruction leaks into code
+// run elsewhere.
 #pragma once
 
 #include <math.h>

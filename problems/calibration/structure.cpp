@@ -11,7 +11,8 @@ using kernel::kHeading;
 using kernel::kLinear;
 using kernel::kStreams;
 
-// Steps of a segment: long enough to amortise its start, short enough for a block to stay in the second-level cache.
+// Steps of a segment: long enough to amortise its start, short enough for a block to stay in the second-level
+// cache.
 constexpr long kSegmentSteps = 256;
 
 // (C_1..C_4, S_1..S_4), one column per increment.
@@ -37,7 +38,8 @@ HeadingVector heading_increment(const HeadingVector& cs) {
   return f;
 }
 
-// Collects the rows (F, F h0 - turned) of HeadingForm. The sums over a recording have more digits than the factor.
+// Collects the rows (F, F h0 - turned) of HeadingForm. The sums over a recording have more digits than the
+// factor.
 class HeadingSums {
  public:
   explicit HeadingSums(const HeadingVector& origin) : origin_(origin.cast<long double>()) { rows_.setZero(); }
@@ -189,7 +191,8 @@ double CalibrationStructure::recording_cost(const RecordingPlan& plan, const Lin
                                                           sums);
     for (int lane = 0; lane < block.width; ++lane) {
       const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
-      // The error at the segment's start is added to every sample of it: sum (e + e0)^2 = sum e^2 + 2 e0 sum e + n e0^2.
+      // The error at the segment's start is added to every sample of it: sum (e + e0)^2 = sum e^2 + 2 e0 sum
+      // e + n e0^2.
       const double ex0 = x - segment.x_ref, ey0 = y - segment.y_ref;
       cost += sums.squares[lane] + 2 * (ex0 * sums.ex[lane] + ey0 * sums.ey[lane]) +
               static_cast<double>(segment.steps) * (ex0 * ex0 + ey0 * ey0);
@@ -209,8 +212,8 @@ double CalibrationStructure::cost(const ConstVectorRef& z) const {
 }
 
 void CalibrationStructure::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
-  // Recording by recording, so that its blocks stay in the cache for all candidates. The order of the additions is
-  // that of cost(): a candidate's value is the same bits alone and in any batch.
+  // Recording by recording, so that its blocks stay in the cache for all candidates. The order of the
+  // additions is that of cost(): a candidate's value is the same bits alone and in any batch.
   std::vector<LinearVector> s;
   std::vector<char> exact;
   for (Eigen::Index k = 0; k < candidates.cols(); ++k) {

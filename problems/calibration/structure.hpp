@@ -18,17 +18,19 @@ using HeadingMatrix = Eigen::Matrix<double, kernel::kHeading, kernel::kHeading>;
 LinearVector linear_parameters(const ConstVectorRef& z);
 LinearMatrix linear_jacobian(const ConstVectorRef& z);
 
-// Sum over all samples of the squared heading error, a constant quadratic form in h = (P, Q), kept as a sum of squares:
+// Sum over all samples of the squared heading error, a constant quadratic form in h = (P, Q), kept as a sum
+// of squares:
 //     |R (h - h0) + q|^2 + rest,  [R q; 0 sqrt(rest)] = triangular factor of [F, F h0 - turned],
-// F = dtheta/dh of every sample, h0 the nominal. Expanded as (h - h0)' F'F (h - h0) + ... it would lose half of the digits near
-// exact data; this way it loses those of the parameters only, and is never negative.
+// F = dtheta/dh of every sample, h0 the nominal. Expanded as (h - h0)' F'F (h - h0) + ... it would lose half
+// of the digits near exact data; this way it loses those of the parameters only, and is never negative.
 struct HeadingForm {
   HeadingVector origin, q;
   HeadingMatrix r, a;  // upper triangle, R'R
   double rest = 0;
 };
 
-// Segments of a recording in time order; `width` of them form a block. The last few increments form one of width 1.
+// Segments of a recording in time order; `width` of them form a block. The last few increments form one of
+// width 1.
 struct Segment {
   long steps = 0;
   HeadingVector heading0;       // dtheta/dh at its start: prefix sums of (-C, S)

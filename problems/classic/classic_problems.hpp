@@ -2,7 +2,8 @@
 //
 // classic: small test functions.
 //   sphere      J = sum (x_i - 1/3)^2                                        box [-1, 1]^n
-//   ellipsoid   J = |D Q (x - c)|^2, D_i = 10^(3 (i-1)/(n-1)), Q a fixed rotation: a rotated valley of condition 1e6
+//   ellipsoid   J = |D Q (x - c)|^2, D_i = 10^(3 (i-1)/(n-1)), Q a fixed rotation: a rotated valley of
+//               condition 1e6
 //   corner      the ellipsoid with c outside the box: the optimum lies on bounds (proven by active sets)
 //   rosenbrock  J = sum 100 (x_{i+1} - x_i^2)^2 + (1 - x_i)^2 (Rosenbrock 1960), box [-2, 2]^n
 //   powell      Powell's singular function (1962), n = 4, box [-4, 5]^4: J'J singular at the optimum
@@ -50,20 +51,21 @@ const std::vector<std::string>& classic_problem_names();
 // Null when there is no such problem.
 const ClassicEntry* find_classic_problem(const std::string& name);
 
-// `dimension` 0: the usual one. Throws std::invalid_argument on an unknown name or a dimension that the problem
-// does not take.
+// `dimension` 0: the usual one. Throws std::invalid_argument on an unknown name or a dimension that the
+// problem does not take.
 Problem make_classic_problem(const std::string& name, int dimension = 0);
 
 // Correct digits of the worst parameter, NIST's log relative error:
 //     LRE(x) = max over the known minimisers c of min_i -log10(|x_i - c_i| / |c_i|), in [0, 11]
-// (-log10 |x_i| where c_i = 0), 0 for an x that is not finite. The minimisers are those of Problem::known_minimisers():
-// an answer with two terms of a sum exchanged is as right as the certified one. Throws std::invalid_argument on an
-// empty list or one of another dimension.
+// (-log10 |x_i| where c_i = 0), 0 for an x that is not finite. The minimisers are those of
+// Problem::known_minimisers(): an answer with two terms of a sum exchanged is as right as the certified one.
+// Throws std::invalid_argument on an empty list or one of another dimension.
 double log_relative_error(const ConstVectorRef& x, const std::vector<Vector>& minimisers);
 inline constexpr double kMostDigits = 11;
 
-// Whether x with cost J is the known answer. nist: problems, whose parameters are certified: log relative error >= 6. Others:
-// J - J* <= max(1e-6 |J*|, 1e-12); their costs are of the order of 1. Throws std::logic_error without a known optimum.
+// Whether x with cost J is the known answer. nist: problems, whose parameters are certified: log relative
+// error >= 6. Others: J - J* <= max(1e-6 |J*|, 1e-12); their costs are of the order of 1. Throws
+// std::logic_error without a known optimum.
 bool reaches_known_optimum(const Problem& problem, const ConstVectorRef& x, double cost);
 
 }  // namespace odobench

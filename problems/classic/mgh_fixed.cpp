@@ -61,7 +61,8 @@ void jennrich_sampson(const ConstVectorRef& x, VectorRef r, MatrixRef* j) {
   }
 }
 
-// The angle of (x1, x2) in turns, in [-1/4, 3/4): the paper leaves x1 = 0 open, the authors' programs say +-1/4.
+// The angle of (x1, x2) in turns, in [-1/4, 3/4): the paper leaves x1 = 0 open, the authors' programs say
+// +-1/4.
 void helical_valley(const ConstVectorRef& x, VectorRef r, MatrixRef* j) {
   constexpr double kTurn = 2 * std::numbers::pi;
   double theta = x[1] < 0 ? -0.25 : 0.25;

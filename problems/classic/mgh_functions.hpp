@@ -1,4 +1,5 @@
-// Residuals, starts and known optima of the problems of more_garbow_hillstrom.hpp, by the numbers of the paper.
+// Residuals, starts and known optima of the problems of more_garbow_hillstrom.hpp, by the numbers of the
+// paper.
 #pragma once
 
 #include <optional>

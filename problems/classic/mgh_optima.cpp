@@ -1,6 +1,6 @@
-// Lowest known costs, and where they are attained. What has no closed form was found by Newton's method on J in 90
-// decimal digits, from the best of many starts, and agrees with all digits that the paper states; only chebyquad for n = 10
-// is lower than there. Random starts all over the boxes found nothing lower anywhere.
+// Lowest known costs, and where they are attained. What has no closed form was found by Newton's method on J
+// in 90 decimal digits, from the best of many starts, and agrees with all digits that the paper states; only
+// chebyquad for n = 10 is lower than there. Random starts all over the boxes found nothing lower anywhere.
 #include <array>
 #include <cmath>
 #include <map>
@@ -152,8 +152,8 @@ MghOptimum from(const std::map<int, Tabulated>& table, int n) {
   return optimum;
 }
 
-// All x_i = t with the cubic a (t - 1) + 2 t (n t^2 - 1/4) = 0, a = 1e-5: from dJ/dx_i = 0 every x_i is the same
-// function of the sum of squares. n t^2 - 1/4 is taken from the cubic, where it does not cancel.
+// All x_i = t with the cubic a (t - 1) + 2 t (n t^2 - 1/4) = 0, a = 1e-5: from dJ/dx_i = 0 every x_i is the
+// same function of the sum of squares. n t^2 - 1/4 is taken from the cubic, where it does not cancel.
 MghOptimum penalty_1_optimum(int n) {
   constexpr double a = 1e-5;
   double t = 0.5 / std::sqrt(n);
@@ -162,7 +162,8 @@ MghOptimum penalty_1_optimum(int n) {
   return {a * n * (1 - t) * (1 - t) + excess * excess, {Vector::Constant(n, t)}};
 }
 
-// r_i = c_i s - 1 with s = sum of w_j x_j: s = sum c / sum c^2, J = m - (sum c)^2 / sum c^2, at the x of least norm.
+// r_i = c_i s - 1 with s = sum of w_j x_j: s = sum c / sum c^2, J = m - (sum c)^2 / sum c^2, at the x of
+// least norm.
 MghOptimum rank_1_optimum(const Vector& c, const Vector& w) {
   const double m = static_cast<double>(c.size());
   return {m - c.sum() * c.sum() / c.squaredNorm(), {c.sum() / c.squaredNorm() / w.squaredNorm() * w}};

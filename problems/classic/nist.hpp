@@ -1,17 +1,18 @@
 // The 27 nonlinear regression problems of the NIST Statistical Reference Datasets
-// (https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml, public domain), each with its two official starts:
-// nist:NAME/1 is the start far from the solution, nist:NAME/2 the near one.
+// (https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml, public domain), each with its two official
+// starts: nist:NAME/1 is the start far from the solution, nist:NAME/2 the near one.
 //
 // r_i = f(b, x_i) - y_i (Nelson: f - log y_i), J = r'r. Parameters b1, b2, ... as NIST counts them.
 // Box: |b_j| <= 10 max(|start 1_j|, |start 2_j|, |certified_j|), the same for both starts.
-// known_optimum() is the certified residual sum of squares, known_minimisers() the certified parameters (11 digits) and
-// those that give the same curve by a symmetry of the model inside the box (exchanged exponentials, peaks or cycles, the
-// sign of a width). Costs are not finite where a model is not defined or overflows.
+// known_optimum() is the certified residual sum of squares, known_minimisers() the certified parameters (11
+// digits) and those that give the same curve by a symmetry of the model inside the box (exchanged
+// exponentials, peaks or cycles, the sign of a width). Costs are not finite where a model is not defined or
+// overflows.
 //
-// The months of ENSO are whole numbers: a cycle of b months there also looks like one of 1 / (k +- 1/b) months for every
-// whole k, so that it has further answers of the same cost with a period of about one month or less, which are not listed.
-// Lanczos1 is data without noise to 12 digits, J* = 1.43e-25: there double precision determines the cost to a few
-// per cent only.
+// The months of ENSO are whole numbers: a cycle of b months there also looks like one of 1 / (k +- 1/b)
+// months for every whole k, so that it has further answers of the same cost with a period of about one month
+// or less, which are not listed. Lanczos1 is data without noise to 12 digits, J* = 1.43e-25: there double
+// precision determines the cost to a few per cent only.
 #pragma once
 
 #include <string>

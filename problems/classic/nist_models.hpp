@@ -5,8 +5,8 @@
 
 namespace odobench {
 
-// f(b, x); with `gradient` also df/db into gradient[0..n-1]. x: the predictors. Where f overflows or is not defined, it
-// and its derivatives are not finite.
+// f(b, x); with `gradient` also df/db into gradient[0..n-1]. x: the predictors. Where f overflows or is not
+// defined, it and its derivatives are not finite.
 using NistModel = double (*)(const double* b, const double* x, double* gradient);
 
 // By the name of the problem; null for an unknown one.

@@ -1,4 +1,5 @@
-// Points of equal cost by a symmetry of a sum: terms of one form may change places, signs may change together.
+// Points of equal cost by a symmetry of a sum: terms of one form may change places, signs may change
+// together.
 #pragma once
 
 #include <vector>

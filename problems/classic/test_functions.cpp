@@ -55,9 +55,10 @@ Matrix ellipsoid_matrix(int n) {
   return d.asDiagonal() * q;
 }
 
-// Minimum of |A (x - c)|^2 in [-1, 1]^n by principal pivoting: from a guess which parameters lie on which bound, every
-// one that contradicts the conditions of Karush, Kuhn and Tucker changes its place (one at a time when that goes in
-// circles: Murty's rule) until none does, which proves the optimum. Empty when that takes more than 1000 changes.
+// Minimum of |A (x - c)|^2 in [-1, 1]^n by principal pivoting: from a guess which parameters lie on which
+// bound, every one that contradicts the conditions of Karush, Kuhn and Tucker changes its place (one at a
+// time when that goes in circles: Murty's rule) until none does, which proves the optimum. Empty when that
+// takes more than 1000 changes.
 std::optional<Vector> corner_of_box(const Matrix& a, const Vector& c) {
   const Eigen::Index n = c.size();
   Eigen::VectorXi side = Eigen::VectorXi::Zero(n);  // -1, 1: on that bound; 0: free

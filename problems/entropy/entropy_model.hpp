@@ -1,8 +1,8 @@
 // What the relative-entropy filter estimates in one window, and the constants derived from its parameters.
 //
-// Increments in the order of the thesis' program: delta_ax(2,3), delta_ay(2,3), ..., delta_ax(N-1,N), delta_ay(N-1,N),
-// eps(1,2), ..., eps(N-1,N); 3N - 5 of them. A ternary unknown t_i in {-1, 0, 1} stands for the increment
-// t_i * step_acceleration (the first 2(N-2)) or t_i * step_rotation (the rest).
+// Increments in the order of the thesis' program: delta_ax(2,3), delta_ay(2,3), ..., delta_ax(N-1,N),
+// delta_ay(N-1,N), eps(1,2), ..., eps(N-1,N); 3N - 5 of them. A ternary unknown t_i in {-1, 0, 1} stands for
+// the increment t_i * step_acceleration (the first 2(N-2)) or t_i * step_rotation (the rest).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,8 @@ struct EntropyState {
   double ax12 = 0, ay12 = 0;  // m/s^2, acceleration between samples 1 and 2, filter frame
 };
 
-// Displacement of every wheel in the filter frame, (2.24)-(2.27), and the rotation in deg, (2.28), of one step.
+// Displacement of every wheel in the filter frame, (2.24)-(2.27), and the rotation in deg, (2.28), of one
+// step.
 struct EntropyPrediction {
   std::array<double, 4> x{}, y{};
   double rotation = 0;
@@ -31,8 +32,8 @@ inline int increment_count(int samples) {
 double alpha(const EntropyConstants& constants);              // rad, atan(width / length)
 double degrees_per_metre(const EntropyConstants& constants);  // k = 180 / (pi L)
 
-// Throws std::invalid_argument naming the constant, its value and what is expected: samples >= 3, everything finite,
-// dt, sigmas, sizes and steps > 0.
+// Throws std::invalid_argument naming the constant, its value and what is expected: samples >= 3, everything
+// finite, dt, sigmas, sizes and steps > 0.
 void validate(const EntropyConstants& constants);
 // The same for a window: as many samples as the constants say, all finite.
 void validate(const EntropyWindow& window);

@@ -28,6 +28,22 @@ double ramp_moment(int samples, int j) {
   return sum;
 }
 
+// Accelerations in x and y, interleaved, then rotations.
+std::vector<QuadraticBlock> blocks_of(const Eigen::MatrixXd& qx, const Eigen::MatrixXd& qr) {
+  std::vector<QuadraticBlock> blocks(3);
+  const auto turns = static_cast<int>(qx.rows());
+  for (int j = 0; j < turns; ++j) {
+    blocks[0].index.push_back(2 * j);
+    blocks[1].index.push_back(2 * j + 1);
+  }
+  for (int m = 0; m < static_cast<int>(qr.rows()); ++m) blocks[2].index.push_back(2 * turns + m);
+  blocks[0].q = blocks[1].q = qx;
+  blocks[2].q = qr;
+  for (QuadraticBlock& block : blocks)
+    block.g = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(block.index.size()));
+  return blocks;
+}
+
 }  // namespace
 
 ProfileForm::ProfileForm(const EntropyConstants& constants) : constants_(constants) {
@@ -81,16 +97,7 @@ ProfileForm::ProfileForm(const EntropyConstants& constants) : constants_(constan
           r_weight_ * turn * turn * (n - std::max(i, j) - (n - i) * (n - j) / static_cast<double>(n));
   for (int m = 1; m < n; ++m) shift_of_r1_.push_back(turn / n * (n - m));
 
-  blocks_.resize(3);
-  for (int j = 0; j < turns; ++j) {
-    blocks_[0].index.push_back(2 * j);
-    blocks_[1].index.push_back(2 * j + 1);
-  }
-  for (int m = 0; m < n - 1; ++m) blocks_[2].index.push_back(2 * turns + m);
-  blocks_[0].q = blocks_[1].q = qx;
-  blocks_[2].q = qr;
-  for (QuadraticBlock& block : blocks_)
-    block.g = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(block.index.size()));
+  blocks_ = blocks_of(qx, qr);
 }
 
 WindowZero ProfileForm::linear_term(const SampleModes* window, std::span<double> g) const {
@@ -139,7 +146,8 @@ WindowZero ProfileForm::linear_term(const SampleModes* window, std::span<double>
     later_e += e;
     ramp_e += later_e;
     if (i < 2) continue;
-    // Increment j = i - 1 acts on the accelerations m > j, those of samples >= i here, and with P_jn = i' - j on them.
+    // Increment j = i - 1 acts on the accelerations m > j, those of samples >= i here, and with P_jn = i' - j
+    // on them.
     const Pair value = acceleration_scale * later_a + encoder_scale * ramp_e;
     gx[i - 2] = value[0];
     gy[i - 2] = value[1];

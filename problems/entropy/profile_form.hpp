@@ -1,7 +1,8 @@
-// The Hamiltonian of a window with the five continuous unknowns eliminated, as three independent concave quadratics:
+// The Hamiltonian of a window with the five continuous unknowns eliminated, as three independent concave
+// quadratics:
 //     H(t) = H0 + sum_B ( g_B' t_B - t_B' Q_B t_B ),   B = x (N-2), y (N-2), r (N-1),
-// an exact identity. Q depends on the constants alone, the data enter H0 and g. The sums over the four wheels are three
-// orthogonal modes X(n), Y(n), R(n), so sx, sy and r do not meet in any term.
+// an exact identity. Q depends on the constants alone, the data enter H0 and g. The sums over the four wheels
+// are three orthogonal modes X(n), Y(n), R(n), so sx, sy and r do not meet in any term.
 #pragma once
 
 #include <span>

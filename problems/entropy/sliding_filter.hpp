@@ -1,6 +1,6 @@
-// The relative-entropy filter over a whole run: a window of N samples slides by one sample, each window is solved from
-// t = 0, and the estimate of its FIRST sample is what comes out: a smoother N - 1 samples late (thesis, section 3.3).
-// Memory does not depend on the length of the run.
+// The relative-entropy filter over a whole run: a window of N samples slides by one sample, each window is
+// solved from t = 0, and the estimate of its FIRST sample is what comes out: a smoother N - 1 samples late
+// (thesis, section 3.3). Memory does not depend on the length of the run.
 #pragma once
 
 #include "problems/entropy/profile_form.hpp"

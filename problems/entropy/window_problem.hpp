@@ -1,5 +1,6 @@
-// One window of the relative-entropy filter on the shared cost interface: J(t) = -H(t), t in [-1, 1]^(3N-5). On the
-// lattice {-1, 0, 1}^(3N-5) that is the thesis' problem; between its points it is the smooth relaxation, a lower bound.
+// One window of the relative-entropy filter on the shared cost interface: J(t) = -H(t), t in [-1, 1]^(3N-5).
+// On the lattice {-1, 0, 1}^(3N-5) that is the thesis' problem; between its points it is the smooth
+// relaxation, a lower bound.
 #pragma once
 
 #include "problems/entropy/profile_form.hpp"

@@ -1,9 +1,11 @@
-// Wheel odometry fused with a camera's pose and a gyro over one recording: measurements of any rate, delayed or missing,
-// in the order of their stamps, through the filters of kalman_filter.hpp; chapter 4 of J. Vitko's thesis, with the
-// innovation against the predicted state. The wheels' twist drives the prediction between stamps.
+// Wheel odometry fused with a camera's pose and a gyro over one recording: measurements of any rate, delayed
+// or missing, in the order of their stamps, through the filters of kalman_filter.hpp; chapter 4 of J. Vitko's
+// thesis, with the innovation against the predicted state. The wheels' twist drives the prediction between
+// stamps.
 //
-// Noise of the wheels and the gyro is white: a sample that holds for h seconds and is used for a part dt of it gets its
-// variance times h/dt there, so that cutting an interval at another sensor's stamp changes nothing.
+// Noise of the wheels and the gyro is white: a sample that holds for h seconds and is used for a part dt of
+// it gets its variance times h/dt there, so that cutting an interval at another sensor's stamp changes
+// nothing.
 #pragma once
 
 #include <cstdint>
@@ -75,19 +77,20 @@ struct FusionResult {
   std::vector<Eigen::Matrix3d> smoothed_factors;
   std::vector<SensorStatistics> sensors;
   std::optional<double> gyro_bias, odometry_scale;  // at the end
-  // Whitened innovations and log det S + dof log 2 pi of the used measurements, in the order of use; on request.
+  // Whitened innovations and log det S + dof log 2 pi of the used measurements, in the order of use; on
+  // request.
   std::vector<double> whitened, log_dets;
 };
 
-// Throws std::invalid_argument naming the field, its value and what was expected: sigmas that are not finite and
-// positive (initial and walk: not negative), a probability outside [0, 1), two yaw-rate or two relative streams, the
-// smoother with relative poses, a gyro bias without a gyro, two sensors of one name.
+// Throws std::invalid_argument naming the field, its value and what was expected: sigmas that are not finite
+// and positive (initial and walk: not negative), a probability outside [0, 1), two yaw-rate or two relative
+// streams, the smoother with relative poses, a gyro bias without a gyro, two sensors of one name.
 void validate(const FusionOptions& options, std::span<const SensorStream> sensors);
 
-// z: twelve parameters as in calibration_problem.hpp. Starts at (0, 0, theta_ref[0]). Throws as validate does, and
-// std::runtime_error about data: a sensor without a single measurement in the recording's time, stamps that do not
-// increase, an arrival before its stamp, values that are not finite. With `keep_innovations` the last two fields
-// of the result are filled.
+// z: twelve parameters as in calibration_problem.hpp. Starts at (0, 0, theta_ref[0]). Throws as validate
+// does, and std::runtime_error about data: a sensor without a single measurement in the recording's time,
+// stamps that do not increase, an arrival before its stamp, values that are not finite. With
+// `keep_innovations` the last two fields of the result are filled.
 FusionResult fuse(const Recording& recording, const ConstVectorRef& z, std::span<const SensorStream> sensors,
                   const FusionOptions& options, bool keep_innovations = false);
 

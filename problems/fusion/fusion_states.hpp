@@ -1,5 +1,6 @@
-// The filter over one recording, compiled once for each state that there is: two choices instead of eight, since each takes half a
-// minute to compile; an unused bias or scale has no variance and stays 0. Arguments as of fuse(), and valid.
+// The filter over one recording, compiled once for each state that there is: two choices instead of eight,
+// since each takes half a minute to compile; an unused bias or scale has no variance and stays 0. Arguments
+// as of fuse(), and valid.
 #pragma once
 
 #include "problems/fusion/fusion.hpp"

@@ -1,11 +1,14 @@
-// A robot in the plane, driven by the body twist that its wheels report, and its sensors: models for KalmanFilter.
+// A robot in the plane, driven by the body twist that its wheels report, and its sensors: models for
+// KalmanFilter.
 //
-// State: pose (x, y [m], theta [rad, not wrapped]), then, where chosen, the gyro's bias b [rad/s], the scale error s of
-// the odometry's translation, and a copy of the pose at an earlier instant (for relative measurements). Noise w:
-// of the twist (m/s, m/s, rad/s), then the random walks of b and s.
+// State: pose (x, y [m], theta [rad, not wrapped]), then, where chosen, the gyro's bias b [rad/s], the scale
+// error s of the odometry's translation, and a copy of the pose at an earlier instant (for relative
+// measurements). Noise w: of the twist (m/s, m/s, rad/s), then the random walks of b and s.
 //     x'     = x + dt (cos(theta) u_x - sin(theta) u_y),      u_x = (1 + s) vx + w_1
-//     y'     = y + dt (sin(theta) u_x + cos(theta) u_y),      u_y = (1 + s) vy + w_2      explicit Euler, as (3.2) of
-//     theta' = theta + dt (omega + w_3)                                                   J. Vitko's thesis (2024)
+//     y'     = y + dt (sin(theta) u_x + cos(theta) u_y),      u_y = (1 + s) vy + w_2      explicit Euler, as
+//     (3.2) of
+//     theta' = theta + dt (omega + w_3)                                                   J. Vitko's thesis
+//     (2024)
 //     b' = b + w_b,  s' = s + w_s
 // so F = [1 0 -dt vy_world; 0 1 dt vx_world; 0 0 1] and G = dt diag(R(theta), 1) for the pose (4.3)-(4.4).
 #pragma once
@@ -138,8 +141,8 @@ struct HeadingSensor {
   void wrap(Value& d) const { d[0] = wrapped_angle(d[0]); }
 };
 
-// The pose seen from its copy: R(theta_c)'(p - p_c), theta - theta_c. Drift that was there already at the copy's
-// instant does not enter.
+// The pose seen from its copy: R(theta_c)'(p - p_c), theta - theta_c. Drift that was there already at the
+// copy's instant does not enter.
 template <int N, int Copy>
 struct RelativePoseSensor {
   static constexpr int kSize = 3;

@@ -31,8 +31,9 @@ struct SensorsFile {
   FusionOptions options;  // filter kind and smoother are the command's business
 };
 
-// Throws DataError naming file, path, what was found and what was expected: unknown keys, an unknown type of sensor, values
-// that validate() or the generators refuse, values beyond any sensor of a robot (docs/fusion.md).
+// Throws DataError naming file, path, what was found and what was expected: unknown keys, an unknown type of
+// sensor, values that validate() or the generators refuse, values beyond any sensor of a robot
+// (docs/fusion.md).
 SensorsFile read_sensors(const std::filesystem::path& file);
 
 // Of all sensors and recordings together: 60 bytes each, and ten microseconds to make and to filter.

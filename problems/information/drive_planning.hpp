@@ -1,12 +1,13 @@
 // Which parameters a set of drives can determine, before anybody drives them.
 //
-// With relative parameters q = z / |nominal|, H = J'J of a drive's residuals at the true parameters and g = J'r of the
-// residuals r that its noise leaves there, calibrating from the drives d = 1..D, driven n_d times each, gives
+// With relative parameters q = z / |nominal|, H = J'J of a drive's residuals at the true parameters and g =
+// J'r of the residuals r that its noise leaves there, calibrating from the drives d = 1..D, driven n_d times
+// each, gives
 //     q - q_true = A^-1 G,   A = sum n_d H_d,   cov(q) = A^-1 C A^-1,
 //     C = sum n_d V_d + m m',   m = sum n_d b_d,   b_d = mean of g,   V_d = its covariance
-// (linear theory of the unweighted least squares that a calibration minimises; bounds ignored). V and b come from
-// replicas of the drive with other noise, so that everything the sensors do is in them: capture noise, jitter, lost
-// messages, quanta, a start pose that is not quite zero, and what no twelve parameters explain.
+// (linear theory of the unweighted least squares that a calibration minimises; bounds ignored). V and b come
+// from replicas of the drive with other noise, so that everything the sensors do is in them: capture noise,
+// jitter, lost messages, quanta, a start pose that is not quite zero, and what no twelve parameters explain.
 #pragma once
 
 #include <span>
@@ -25,11 +26,13 @@ struct DriveInformation {
   Matrix scatter;  // V (12 x 12)
 };
 
-// From at least two replicas of one drive. `truth`: the parameters they were made with. Throws std::invalid_argument.
+// From at least two replicas of one drive. `truth`: the parameters they were made with. Throws
+// std::invalid_argument.
 DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
                                    const std::vector<Recording>& replicas, const Vector& truth,
                                    InstructionSet kernel = widest_instruction_set());
-// From one recording without noise, as if every pose component had white noise of this standard deviation (m, rad).
+// From one recording without noise, as if every pose component had white noise of this standard deviation (m,
+// rad).
 DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
                                    const Recording& recording, const Vector& truth, double sigma,
                                    InstructionSet kernel = widest_instruction_set());
@@ -44,14 +47,15 @@ struct Direction {
 struct PlanAnalysis {
   Vector standard_deviations;         // relative, of each parameter; infinite when undetermined
   std::vector<Direction> directions;  // best determined first
-  // A basis of the directions whose standard deviation exceeds `wanted`, with as few parameters in each as elimination
-  // finds, largest entry 1, in q (12 x count).
+  // A basis of the directions whose standard deviation exceeds `wanted`, with as few parameters in each as
+  // elimination finds, largest entry 1, in q (12 x count).
   Matrix undetermined;
   std::vector<std::string> undetermined_words;  // the same: "a1 against a2": one larger in size, the other
   // smaller changes nothing
 };
 
-// `counts`: how often each drive is driven (not negative). Throws std::invalid_argument when the lengths differ.
+// `counts`: how often each drive is driven (not negative). Throws std::invalid_argument when the lengths
+// differ.
 PlanAnalysis analyse_drives(std::span<const DriveInformation> drives, const std::vector<int>& counts,
                             const std::vector<ParameterInfo>& parameters, double wanted);
 
@@ -62,9 +66,9 @@ struct Proposal {
 };
 
 // `fixed`: what else is driven, as one sum (empty matrices: nothing).
-// Adds one drive after the other to `counts`, each time the one that lowers sum_i max(0, log(sd_i / wanted)) most (a
-// parameter nothing tells about counts as known to its box), until every standard deviation is at most `wanted` or
-// `most` drives have been added.
+// Adds one drive after the other to `counts`, each time the one that lowers sum_i max(0, log(sd_i / wanted))
+// most (a parameter nothing tells about counts as known to its box), until every standard deviation is at
+// most `wanted` or `most` drives have been added.
 std::vector<Proposal> propose_drives(std::span<const DriveInformation> drives, std::vector<int> counts,
                                      const DriveInformation& fixed,
                                      const std::vector<ParameterInfo>& parameters, double wanted, int most);

@@ -22,7 +22,8 @@ struct Covariance {
   Vector deviations;
 };
 
-// By the eigenvalues of the equilibrated J'J (unit diagonal): units decide nothing about which of them are rounding.
+// By the eigenvalues of the equilibrated J'J (unit diagonal): units decide nothing about which of them are
+// rounding.
 Covariance covariance_of(const Matrix& jtj) {
   const Eigen::Index n = jtj.rows();
   const Vector size = jtj.diagonal().cwiseMax(0.0).cwiseSqrt();

@@ -1,6 +1,6 @@
-// Is a filter as good as it says? NEES = e' P^-1 e over the errors e of the state, NIS over the innovations; both are
-// chi-square distributed when the model is right (Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications
-// to Tracking and Navigation, 2001, 5.4).
+// Is a filter as good as it says? NEES = e' P^-1 e over the errors e of the state, NIS over the innovations;
+// both are chi-square distributed when the model is right (Y. Bar-Shalom, X. R. Li, T. Kirubarajan,
+// Estimation with Applications to Tracking and Navigation, 2001, 5.4).
 #pragma once
 
 namespace odobench {
@@ -9,7 +9,8 @@ namespace odobench {
 // 0 < probability < 1.
 double chi_square_quantile(double probability, double dof);
 
-// The two-sided band that holds the mean of `count` independent chi-square values of `dof` with `probability`.
+// The two-sided band that holds the mean of `count` independent chi-square values of `dof` with
+// `probability`.
 struct ConsistencyBand {
   double lower = 0;
   double upper = 0;

@@ -21,17 +21,18 @@ inline void require(bool good, const char* field, double value, const char* expe
 
 enum class FilterKind { Extended, Unscented };
 
-// Points at x +- sqrt(n + lambda) L_j with lambda = alpha^2 (n + kappa) - n; mean weights lambda/(n+lambda) and
-// 1/(2(n+lambda)), the centre's covariance weight is larger by 1 - alpha^2 + beta. A negative centre weight of the
-// covariance could make it indefinite and is refused.
+// Points at x +- sqrt(n + lambda) L_j with lambda = alpha^2 (n + kappa) - n; mean weights lambda/(n+lambda)
+// and
+// 1/(2(n+lambda)), the centre's covariance weight is larger by 1 - alpha^2 + beta. A negative centre weight
+// of the covariance could make it indefinite and is refused.
 struct UnscentedOptions {
   double alpha = 1;
   double beta = 2;  // right for Gaussians to fourth order
   double kappa = 0;
 };
 
-// n + lambda, the centre's weights, the weight of the others, for n dimensions. Throws std::invalid_argument when
-// n + lambda is not positive or the centre's covariance weight is negative.
+// n + lambda, the centre's weights, the weight of the others, for n dimensions. Throws std::invalid_argument
+// when n + lambda is not positive or the centre's covariance weight is negative.
 struct SigmaWeights {
   double spread = 0, mean0 = 0, covariance0 = 0, other = 0;
 };
@@ -55,8 +56,8 @@ inline SigmaWeights sigma_weights(const UnscentedOptions& o, Eigen::Index n) {
 struct KalmanOptions {
   FilterKind kind = FilterKind::Extended;
   UnscentedOptions unscented;
-  // (4.7) of J. Vitko's thesis read to the letter: the innovation is z - h(x_n) with the state before the prediction.
-  // The estimate then leads by the last increment of the odometry. For comparison only.
+  // (4.7) of J. Vitko's thesis read to the letter: the innovation is z - h(x_n) with the state before the
+  // prediction. The estimate then leads by the last increment of the odometry. For comparison only.
   bool literal_47 = false;
 };
 
@@ -71,7 +72,8 @@ struct Innovation {
 };
 
 // A scalar measurement of the process: its value differs from what is expected at w = 0 by `innovation`, with
-// derivatives hx to the state and hw to the noise and standard deviation sigma. A gyro that corrects the yaw rate of a step.
+// derivatives hx to the state and hw to the noise and standard deviation sigma. A gyro that corrects the yaw
+// rate of a step.
 template <int N, int W>
 struct ProcessMeasurement {
   Eigen::Matrix<double, 1, N> hx;
@@ -81,8 +83,8 @@ struct ProcessMeasurement {
   bool touches_state = false;  // hx is not zero
 };
 
-// Deviations before and after a prediction, joined column by column: before before' = P, after after' = P of the next
-// instant, before after' = their covariance. What a smoother needs.
+// Deviations before and after a prediction, joined column by column: before before' = P, after after' = P of
+// the next instant, before after' = their covariance. What a smoother needs.
 struct PredictionRecord {
   Vector x, x_next;
   Matrix before, after;

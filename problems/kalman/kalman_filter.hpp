@@ -1,22 +1,27 @@
 // Kalman filters on one small model interface, in square-root form.
 //
-// The estimate is a mean x (n) and a lower-triangular factor S of its covariance, P = S S'. Prediction and update build
-// an array M with M M' = the new covariance and triangularise it (triangular.hpp). P is never formed or subtracted from,
-// so it stays symmetric and positive semidefinite whatever the gain and however long the run; nothing is ever repaired.
+// The estimate is a mean x (n) and a lower-triangular factor S of its covariance, P = S S'. Prediction and
+// update build an array M with M M' = the new covariance and triangularise it (triangular.hpp). P is never
+// formed or subtracted from, so it stays symmetric and positive semidefinite whatever the gain and however
+// long the run; nothing is ever repaired.
 //
-// Equations, with L the factor of the joint covariance of state and process noise (x, w), L = diag(S, Lq) at first:
+// Equations, with L the factor of the joint covariance of state and process noise (x, w), L = diag(S, Lq) at
+// first:
 //     prediction   x = f(x, w, u, dt),  S = tri[ [F G] L ]                                     (extended)
 //     update       A = H S,  Sy = tri[A, Lr],  K = S A' (Sy Sy')^-1
-//                  x = x + K (z - h(x)),  S = tri[ S - K A, K Lr ]     Joseph's form (I-KH) P (I-KH)' + K R K', factored
-// With sigma points the arrays hold weighted deviations instead (unscented; S. Julier, J. Uhlmann 1997; update in the
-// form of I. Arasaratnam, S. Haykin, IEEE TAC 54(6), 2009): S = tri[ dX - K dZ, K Lr ], which needs no downdate.
-// On a linear model the extended filter is the linear Kalman filter.
+//                  x = x + K (z - h(x)),  S = tri[ S - K A, K Lr ]     Joseph's form (I-KH) P (I-KH)' + K R
+//                  K', factored
+// With sigma points the arrays hold weighted deviations instead (unscented; S. Julier, J. Uhlmann 1997;
+// update in the form of I. Arasaratnam, S. Haykin, IEEE TAC 54(6), 2009): S = tri[ dX - K dZ, K Lr ], which
+// needs no downdate. On a linear model the extended filter is the linear Kalman filter.
 //
 // A process model M has
 //     static constexpr int kStates, kNoises;          (Eigen::Dynamic allowed, both together)
 //     using Input = ...;
-//     State move(x, w, u, dt) const;                  f, w (p) the process noise, of mean 0 and covariance Lq Lq'
-//     State linearise(x, w, u, dt, F, G) const;       fills df/dx (n x n), df/dw (n x p), returns f: what both need is
+//     State move(x, w, u, dt) const;                  f, w (p) the process noise, of mean 0 and covariance Lq
+//     Lq'
+//     State linearise(x, w, u, dt, F, G) const;       fills df/dx (n x n), df/dw (n x p), returns f: what
+//     both need is
 //                                                     computed once
 // and a sensor
 //     static constexpr int kSize;
@@ -48,8 +53,8 @@ class KalmanFilter {
   using NoiseMap = Eigen::Matrix<double, kN, kW>;
   using Input = typename M::Input;
 
-  // Throws std::invalid_argument when sizes do not match, x is not finite, p is no covariance (zero eigenvalues are
-  // allowed: a start that is known), or the sigma-point weights are not usable.
+  // Throws std::invalid_argument when sizes do not match, x is not finite, p is no covariance (zero
+  // eigenvalues are allowed: a start that is known), or the sigma-point weights are not usable.
   KalmanFilter(M model, const KalmanOptions& options, const State& x, const ConstMatrixRef& p);
 
   const M& model() const { return model_; }
@@ -61,15 +66,16 @@ class KalmanFilter {
     s_ = factor;
   }
 
-  // One step; lq factors the covariance of w over it. `measurement` (may be null) corrects w, and the state through
-  // what they share, beforehand, unless its NIS exceeds `gate`. Throws std::runtime_error when the result is not finite.
+  // One step; lq factors the covariance of w over it. `measurement` (may be null) corrects w, and the state
+  // through what they share, beforehand, unless its NIS exceeds `gate`. Throws std::runtime_error when the
+  // result is not finite.
   Innovation<1> predict(const Input& u, const NoiseFactor& lq, double dt,
                         const ProcessMeasurement<kN, kW>* measurement = nullptr, double gate = kNoGate,
                         PredictionRecord* record = nullptr);
 
-  // lr factors the covariance of z (lower triangular). Above `gate` the estimate stays as it was and accepted is
-  // false. Throws std::runtime_error when the innovation has no positive definite covariance or is not finite,
-  // std::invalid_argument when sizes do not fit.
+  // lr factors the covariance of z (lower triangular). Above `gate` the estimate stays as it was and accepted
+  // is false. Throws std::runtime_error when the innovation has no positive definite covariance or is not
+  // finite, std::invalid_argument when sizes do not fit.
   template <class S>
   Innovation<S::kSize> update(const S& sensor, const Eigen::Matrix<double, S::kSize, 1>& z,
                               const Eigen::Matrix<double, S::kSize, S::kSize>& lr, double gate = kNoGate);
@@ -93,8 +99,9 @@ class KalmanFilter {
   template <class S>
   Innovation<S::kSize> unscented_update(const S& sensor, const Eigen::Matrix<double, S::kSize, 1>& z,
                                         const Eigen::Matrix<double, S::kSize, S::kSize>& lr, double gate);
-  // Corrects the state with out.nu: dx (n x count) and dz (m x count) are deviations of the state and of the predicted
-  // measurement, P = dx dx', cross covariance dx dz', covariance of the innovation dz dz' + lr lr'. Fills the rest of out.
+  // Corrects the state with out.nu: dx (n x count) and dz (m x count) are deviations of the state and of the
+  // predicted measurement, P = dx dx', cross covariance dx dz', covariance of the innovation dz dz' + lr lr'.
+  // Fills the rest of out.
   template <int Z, int C>
   void correct(const Eigen::Matrix<double, kN, C>& dx, const Eigen::Matrix<double, Z, C>& dz,
                const Eigen::Matrix<double, Z, Z>& lr, double gate, Innovation<Z>& out);
@@ -130,7 +137,8 @@ void KalmanFilter<M>::require_finite(const char* where) const {
 template <class M>
 template <int Z>
 void KalmanFilter<M>::measure_innovation(Innovation<Z>& out, double gate) {
-  // log of the product of the diagonal: taken apart before many small or large factors leave the range of doubles.
+  // log of the product of the diagonal: taken apart before many small or large factors leave the range of
+  // doubles.
   double product = 1, log_sum = 0;
   for (Eigen::Index i = 0; i < out.nu.size(); ++i) {
     const double factor = out.factor(i, i);

@@ -1,5 +1,5 @@
-// A discretised linear system and linear sensors as models of KalmanFilter: with the extended kind, the linear Kalman
-// filter for any number of states.
+// A discretised linear system and linear sensors as models of KalmanFilter: with the extended kind, the
+// linear Kalman filter for any number of states.
 #pragma once
 
 #include <fmt/format.h>

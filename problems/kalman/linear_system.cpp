@@ -34,8 +34,8 @@ double one_norm(const Matrix& m) {
   return m.size() == 0 ? 0.0 : m.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-// A factor by which a block is multiplied so that it does not decide how often the exponential is squared: columns of
-// different size would cost digits of the smaller ones.
+// A factor by which a block is multiplied so that it does not decide how often the exponential is squared:
+// columns of different size would cost digits of the smaller ones.
 double balance(double block, double of) {
   return block > 0 ? (of > 0 ? of / block : 1 / block) : 1.0;
 }
@@ -45,7 +45,8 @@ Matrix noise_intensity(const LinearSystem& system) {
   return 0.5 * (w + w.transpose());
 }
 
-// Van Loan over a step h with |A| h <= 1, where e^{-Ah} is harmless, then doubled: Q(2h) = Q(h) + F(h) Q(h) F(h)'.
+// Van Loan over a step h with |A| h <= 1, where e^{-Ah} is harmless, then doubled: Q(2h) = Q(h) + F(h) Q(h)
+// F(h)'.
 Matrix noise_covariance(const LinearSystem& system, double period) {
   const Eigen::Index n = system.a.rows();
   if (system.g.cols() == 0) return Matrix::Zero(n, n);

@@ -1,8 +1,8 @@
 // A linear system as a JSON file:
 //   {"name": "...", "description": "...", "states": ["x [m]", ...], "inputs": [...], "noises": [...],
 //    "A": [[..], ..], "B": [[..], ..], "G": [[..], ..], "Qc": [[..], ..]}
-// A is needed; without B there are no inputs, without G and Qc no noise (both or neither). Matrices are arrays of rows. A
-// unit in brackets after a name is optional, names may be left out.
+// A is needed; without B there are no inputs, without G and Qc no noise (both or neither). Matrices are
+// arrays of rows. A unit in brackets after a name is optional, names may be left out.
 #pragma once
 
 #include <filesystem>

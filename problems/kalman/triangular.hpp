@@ -1,6 +1,6 @@
-// The one operation behind our square-root filters: from a wide array M with M M' = P to a lower-triangular S with
-// S S' = P, by Householder reflections from the right. P itself is never formed, so it cannot lose symmetry or get a
-// negative eigenvalue, and S keeps twice the digits of P.
+// The one operation behind our square-root filters: from a wide array M with M M' = P to a lower-triangular S
+// with S S' = P, by Householder reflections from the right. P itself is never formed, so it cannot lose
+// symmetry or get a negative eigenvalue, and S keeps twice the digits of P.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace odobench {
 
-// m is n x k; the result n x n, diagonal >= 0, zeros above it. Columns beyond n may be zero or absent (k < n).
-// Equations: G. Golub, C. Van Loan, Matrix Computations, 5.1; row i is reflected onto its diagonal entry.
+// m is n x k; the result n x n, diagonal >= 0, zeros above it. Columns beyond n may be zero or absent (k <
+// n). Equations: G. Golub, C. Van Loan, Matrix Computations, 5.1; row i is reflected onto its diagonal entry.
 template <int N, int K>
 Eigen::Matrix<double, N, N> lower_triangular(Eigen::Matrix<double, N, K> m) {
   const Eigen::Index n = m.rows(), k = m.cols();

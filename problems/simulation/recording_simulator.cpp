@@ -73,8 +73,8 @@ class Controller {
   std::vector<Pose> errors_;
 };
 
-// Of the two folds of a command the one nearer to where the wheels are: a servo does not swing round by half a turn
-// because a command passes 90 degrees by a hair.
+// Of the two folds of a command the one nearer to where the wheels are: a servo does not swing round by half
+// a turn because a command passes 90 degrees by a hair.
 WheelState near_to(WheelState command, const PerWheel& held) {
   for (std::size_t i = 0; i < kWheelCount; ++i) {
     constexpr double slack = kPi / 4;  // beyond it a servo does swing round

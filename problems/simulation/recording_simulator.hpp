@@ -34,21 +34,24 @@ struct DriveLogs {
 
 // Deterministic in its arguments. The scenario must be valid. Not for exact scenarios.
 //
-// At every tick of the odometry the robot reads its wheels (quanta, noise), integrates (2.16) with the believed
-// parameters, and commands the inverse kinematics of
+// At every tick of the odometry the robot reads its wheels (quanta, noise), integrates (2.16) with the
+// believed parameters, and commands the inverse kinematics of
 //     u = R(theta_ref - theta) twist_ref + K e,   e = error of its own odometry delay_s ago,
-// where the reference is lead_s ahead: that is the overshoot at the start of the published drives. Between ticks the
-// wheels follow through two lags, the steering with its limited rate, bias and wander, and the body moves along exact
-// arcs of 4 ms by the true parameters. Drives that begin with more than 30 degrees of steering are steered before they
-// begin; with 30 to 60 degrees one in twenty recordings is not.
+// where the reference is lead_s ahead: that is the overshoot at the start of the published drives. Between
+// ticks the wheels follow through two lags, the steering with its limited rate, bias and wander, and the body
+// moves along exact arcs of 4 ms by the true parameters. Drives that begin with more than 30 degrees of
+// steering are steered before they begin; with 30 to 60 degrees one in twenty recordings is not.
 DriveLogs simulate_logs(const RecordingScenario& scenario, const Drive& drive, std::uint64_t seed);
 
-// The recording that an import makes of the two logs: wheel signals interpolated onto the capture's stamps, the first
-// 29 samples dropped (vitko2024.hpp). Names are left empty. `start_us`, if not null, receives when the recording's time
+// The recording that an import makes of the two logs: wheel signals interpolated onto the capture's stamps,
+// the first
+// 29 samples dropped (vitko2024.hpp). Names are left empty. `start_us`, if not null, receives when the
+// recording's time
 // 0 is on the clock of the logs. Throws DataError when the motion capture saw too little for that.
 Recording recording_of(const DriveLogs& logs, std::int64_t* start_us = nullptr);
 
-// An exact drive: constant commands of the believed inverse kinematics, moved exactly, all on the odometry's grid with
+// An exact drive: constant commands of the believed inverse kinematics, moved exactly, all on the odometry's
+// grid with
 // 60 ticks of standing before and after.
 Recording exact_recording(const RecordingScenario& scenario, const Drive& drive);
 

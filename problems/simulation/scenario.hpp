@@ -1,6 +1,7 @@
-// What is to be simulated: a robot with four steered and driven wheels whose true parameters are known, its drives, its
-// controller, its sensors and their faults. The defaults are the character of the 30 recordings that J. Vitko published
-// with his thesis (University of Zagreb, 2024), measured in them. On disk a scenario is JSON (docs/simulation.md).
+// What is to be simulated: a robot with four steered and driven wheels whose true parameters are known, its
+// drives, its controller, its sensors and their faults. The defaults are the character of the 30 recordings
+// that J. Vitko published with his thesis (University of Zagreb, 2024), measured in them. On disk a scenario
+// is JSON (docs/simulation.md).
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,9 @@ struct Phase {
 struct Drive {
   std::string name, description;
   std::vector<Phase> phases;
-  // Wheels made to fight a little: added to their commanded steering, rad, and a factor of their commanded speed. By
-  // commands that agree with each other no drive shows more than nine combinations of the twelve parameters: the true
-  // body velocity is then a 3 x 3 matrix times the commanded one.
+  // Wheels made to fight a little: added to their commanded steering, rad, and a factor of their commanded
+  // speed. By commands that agree with each other no drive shows more than nine combinations of the twelve
+  // parameters: the true body velocity is then a 3 x 3 matrix times the commanded one.
   PerWheel steering_offset{};
   PerWheel speed_factor{1, 1, 1, 1};
 
@@ -42,8 +43,8 @@ struct Drive {
 
 // The six reference drives of the thesis in the order of its tables (trajectories_4wis4wid()).
 std::vector<Drive> reference_drives();
-// These and others that excite more: diagonals, crab circles, tight circles, figures of eight, turns about a wheel, and
-// lines with one wheel fighting. The candidates of drive planning.
+// These and others that excite more: diagonals, crab circles, tight circles, figures of eight, turns about a
+// wheel, and lines with one wheel fighting. The candidates of drive planning.
 std::vector<Drive> known_drives();
 
 enum class Kinematics { Published, LeastSquares };
@@ -140,10 +141,11 @@ double most_samples(const RecordingScenario& scenario);
 // The nominal values of a robot with the twelve parameters.
 Parameters nominal_parameters(const Robot& robot);
 
-// Throws DataError "WHERE: what was found, expected ...": names, negative or non-finite values, values beyond any wheeled robot
-// (docs/simulation.md lists the limits), rates <= 0, durations <= 0, probabilities outside [0, 1], ranges the wrong way round, a drive that needs a steering angle beyond the
-// limit, a believed or true wheel at the origin or with radius <= 0, gains of a trajectory that is not driven,
-// contradictory options (exact with slip, gains, or closed loop), a feedback too fast for its delay.
+// Throws DataError "WHERE: what was found, expected ...": names, negative or non-finite values, values beyond
+// any wheeled robot (docs/simulation.md lists the limits), rates <= 0, durations <= 0, probabilities outside
+// [0, 1], ranges the wrong way round, a drive that needs a steering angle beyond the limit, a believed or
+// true wheel at the origin or with radius <= 0, gains of a trajectory that is not driven, contradictory
+// options (exact with slip, gains, or closed loop), a feedback too fast for its delay.
 void validate(const RecordingScenario& scenario, const std::string& where);
 
 }  // namespace odobench::simulate

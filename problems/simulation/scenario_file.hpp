@@ -1,5 +1,5 @@
-// Scenarios on disk: JSON as described in docs/simulation.md and by datasets/scenarios/schema.json. Every key is
-// optional except schema, schema_version, kind and name; what is absent has the default of scenario.hpp.
+// Scenarios on disk: JSON as described in docs/simulation.md and by datasets/scenarios/schema.json. Every key
+// is optional except schema, schema_version, kind and name; what is absent has the default of scenario.hpp.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ ScenarioHead read_head(const JsonNode& root);
 // Of kind "recordings"; unknown keys, wrong types and everything that validate() refuses are DataErrors.
 RecordingScenario read_scenario(const JsonNode& root);
 
-// "truth" and "believed" of a robot: "nominal", or an object with some or all of a1 .. r4 in metres; the others are
-// nominal.
+// "truth" and "believed" of a robot: "nominal", or an object with some or all of a1 .. r4 in metres; the
+// others are nominal.
 Parameters read_parameters(const JsonNode& node, const Robot& robot);
 
 }  // namespace odobench::simulate

@@ -23,9 +23,9 @@ struct SimulatedSet {
   std::vector<SimulatedDrive> drives;  // of each recording, in order; recordings are in the data set only
 };
 
-// Drive by drive, repetition by repetition. The seed of each derives from `seed`, the drive's name and the repetition:
-// the same bits alone, among others and for any number of threads (0: as many as the machine has).
-// Throws DataError when the scenario is not valid.
+// Drive by drive, repetition by repetition. The seed of each derives from `seed`, the drive's name and the
+// repetition: the same bits alone, among others and for any number of threads (0: as many as the machine
+// has). Throws DataError when the scenario is not valid.
 SimulatedSet simulate_set(const RecordingScenario& scenario, std::uint64_t seed, int threads = 0);
 
 // One of them. The scenario must be valid.
@@ -35,8 +35,8 @@ SimulatedDrive simulate_drive(const RecordingScenario& scenario, const Drive& dr
 // "truth" and "believed".
 std::vector<NamedParameters> known_parameters(const RecordingScenario& scenario);
 
-// truth.json: the scenario's name, the seed, true parameters, kinematics, offsets and slip; of each recording when the
-// drive began and ended, on the recording's clock.
+// truth.json: the scenario's name, the seed, true parameters, kinematics, offsets and slip; of each recording
+// when the drive began and ended, on the recording's clock.
 std::string truth_json(const RecordingScenario& scenario, std::uint64_t seed, const SimulatedSet& set);
 // truth.csv: recording,time_s,x,y,theta, the true path every tenth of a second on the recording's clock.
 std::string truth_csv(const RecordingScenario& scenario, const SimulatedSet& set);

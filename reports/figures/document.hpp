@@ -13,9 +13,10 @@ namespace odobench {
 
 // A chart as a Vega-Lite 6 specification that names no colours and no fonts: page and print have their own.
 //
-// Its data are {"name": NAME, "format": {"type": "csv", "parse": {..}}}, NAME one of Document::datasets; standalone() puts the
-// text in its place. Widths of views are for print (single view: kFigureWidth); a page replaces them by what there is.
-// What a reader may choose is a top-level parameter {"name", "value"} that the specification filters by, offered as
+// Its data are {"name": NAME, "format": {"type": "csv", "parse": {..}}}, NAME one of Document::datasets;
+// standalone() puts the text in its place. Widths of views are for print (single view: kFigureWidth); a page
+// replaces them by what there is. What a reader may choose is a top-level parameter {"name", "value"} that
+// the specification filters by, offered as
 //   "usermeta": {"odobench": {"columns": views side by side (default 1),
 //                             "aspect": "equal" to keep width : height (default: the height stays),
 //                             "controls": [{"param": "method", "label": "Method",
@@ -56,8 +57,9 @@ std::vector<const Figure*> figures(const Document& document);
 // std::invalid_argument naming figure and data set when the document lacks one.
 nlohmann::json standalone(const Figure& figure, const std::map<std::string, std::string>& datasets);
 
-// One self-contained HTML page, see reports/page/html_page.cpp. Without `charts` (which a binary without the chart library, see
-// reports/page/web_assets.hpp, cannot draw) it keeps the tables, and one line says what is missing and why.
+// One self-contained HTML page, see reports/page/html_page.cpp. Without `charts` (which a binary without the
+// chart library, see reports/page/web_assets.hpp, cannot draw) it keeps the tables, and one line says what is
+// missing and why.
 std::string render_html(const Document& document);
 std::string render_html(const Document& document, bool charts);
 

@@ -13,7 +13,8 @@ using nlohmann::json;
 // {"name", "format": {"type": "csv", "parse": ..}}: columns listed in `numbers` are numbers, the others text.
 json csv_data(const std::string& name, const std::vector<std::string>& numbers);
 
-// Encoding channels. An empty title leaves the axis or legend without one. Quantitative scales need not contain 0.
+// Encoding channels. An empty title leaves the axis or legend without one. Quantitative scales need not
+// contain 0.
 json quantitative(const std::string& field, const std::string& title);
 json logarithmic(const std::string& field, const std::string& title);
 // In the order given, not sorted.

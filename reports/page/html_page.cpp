@@ -1,5 +1,6 @@
-// A page without external resources: style, programs, chart library and data are inside, a content security policy forbids
-// every request. Tables are complete without JavaScript; charts are drawn by reports/web/charts.js when they come into view.
+// A page without external resources: style, programs, chart library and data are inside, a content security
+// policy forbids every request. Tables are complete without JavaScript; charts are drawn by
+// reports/web/charts.js when they come into view.
 #include <fmt/format.h>
 
 #include <set>

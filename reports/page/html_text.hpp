@@ -10,7 +10,8 @@ namespace odobench {
 // &, <, >, " and ' as entities: for text and for attributes in double quotes.
 std::string html_escape(std::string_view text);
 
-// "e_x,max" with its index as such: <i>e</i><sub>x,max</sub>; a name that is not one letter with an index is escaped only.
+// "e_x,max" with its index as such: <i>e</i><sub>x,max</sub>; a name that is not one letter with an index is
+// escaped only.
 std::string html_symbol(std::string_view name);
 
 // JSON for a <script> element: no '<' in it, hence no end tag and no comment. What is not UTF-8 is replaced.

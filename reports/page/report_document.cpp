@@ -18,22 +18,25 @@
 #include "reports/kinds/entropy/window_tables.hpp"
 #include "reports/kinds/fusion/fusion_figures.hpp"
 #include "reports/kinds/fusion/fusion_record.hpp"
+#include "reports/kinds/planning/planning_tables.hpp"
+#include "reports/kinds/verification/verification_tables.hpp"
 
 namespace odobench {
 namespace {
 
 // Every kind of record has tables and figures of its own.
 struct Sorted {
-  std::vector<RunRecord> filters, windows, fusions, others;
+  std::vector<RunRecord> filters, windows, fusions, plans, others;
 };
 
 Sorted sorted(const std::vector<RunRecord>& records) {
   Sorted out;
   for (const RunRecord& r : records)
-    (r.problem == kFilterProblem   ? out.filters
-     : r.problem == kWindowProblem ? out.windows
-     : r.problem == kFusionProblem ? out.fusions
-                                   : out.others)
+    (r.problem == kFilterProblem     ? out.filters
+     : r.problem == kWindowProblem   ? out.windows
+     : r.problem == kFusionProblem   ? out.fusions
+     : r.problem == kPlanningProblem ? out.plans
+                                     : out.others)
         .push_back(r);
   return out;
 }
@@ -86,8 +89,8 @@ std::string made(const std::vector<RunRecord>& records) {
   return fmt::format("{}, odobench {} (revision {}), {}", first, c.version, c.git_revision, c.cpu);
 }
 
-// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of 18 mean errors got
-// worse."
+// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of
+// 18 mean errors got worse."
 std::string headline(const Comparison& comparison) {
   const ComparisonRow* best = nullptr;
   for (const ComparisonRow& row : comparison.rows)
@@ -140,6 +143,7 @@ class Builder {
     filter();
     windows();
     fusion();
+    planning();
     Section provenance{"provenance", "Provenance", "What the numbers depend on.", {}};
     append(provenance_tables(input_.records), provenance);
     finish(std::move(provenance));
@@ -160,8 +164,9 @@ class Builder {
       const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
                                    [](const ComparisonRow& r) { return r.kind != "evaluation"; });
       if (const std::string text = headline(c); !text.empty()) section.blocks.emplace_back(Paragraph{text});
-      section.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
-                                      : cost_table(c));
+      if (has_costs(c))
+        section.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
+                                        : cost_table(c));
       append(totals_table(c), section);
     }
     if (!sorted_.filters.empty()) section.blocks.emplace_back(filter_tables_.front());
@@ -185,6 +190,7 @@ class Builder {
       append(c.rows.size() == 1 ? std::vector<Table>{} : error_tables(c), section);
       if (c.rows.size() == 1) append(error_overview(c), section);
     }
+    append(arrival_tables(sorted_.others), section);
     finish(std::move(section));
   }
 
@@ -274,6 +280,12 @@ class Builder {
     finish(std::move(section));
   }
 
+  void planning() {
+    Section section{"planning", "Planned drives", "What calibrations on these drives would determine.", {}};
+    for (const RunRecord& record : sorted_.plans) append(planning_tables(record), section);
+    finish(std::move(section));
+  }
+
   const ReportInput& input_;
   const Sorted sorted_;
   const std::vector<Comparison> comparisons_;
@@ -295,6 +307,8 @@ std::vector<Table> record_tables(const std::vector<RunRecord>& records, const st
     for (Table& table : more) tables.push_back(std::move(table));
   };
   if (!kinds.others.empty()) add(comparison_tables(kinds.others, notes));
+  add(arrival_tables(kinds.others));
+  for (const RunRecord& plan : kinds.plans) add(planning_tables(plan));
   add(filter_tables(kinds.filters));
   add(window_tables(kinds.windows, full_digits));
   if (!kinds.fusions.empty()) add(fusion_tables(nullptr, kinds.fusions, fusion_rows(kinds.fusions)));

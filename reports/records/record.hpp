@@ -37,9 +37,9 @@ struct TracePoint {
   double cost = 0;  // best so far
 };
 
-// Of the driver's test of first-order optimality at the returned point (docs/solvers.md): `converged` is said where
-// value <= limit. value: what a step inside the box still promises, as a part of the cost; not-a-number where cost or
-// derivatives are not finite.
+// Of the driver's test of first-order optimality at the returned point (docs/solvers.md): `converged` is said
+// where value <= limit. value: what a step inside the box still promises, as a part of the cost; not-a-number
+// where cost or derivatives are not finite.
 struct OptimalityRecord {
   std::string test;  // "a bounded Gauss-Newton step", "a bounded Newton step", "no free parameter"
   double value = 0;
@@ -53,7 +53,8 @@ struct KnownAnswer {
   std::optional<double>
       digits;  // of the worst parameter, where the minimisers are known (NIST's log relative error, 0 to 11)
   bool solved = false;  // docs/problems.md says by which rule
-  // Of a bounded Gauss-Newton step at the returned point by differences of residuals alone: a second opinion on `converged`.
+  // Of a bounded Gauss-Newton step at the returned point by differences of residuals alone: a second opinion
+  // on `converged`.
   std::optional<double> promise;
 };
 
@@ -85,7 +86,8 @@ struct RunRecord {
   std::string box;     // check sum of the parameters' names and bounds; "" in older records
   std::optional<bool>
       random;  // whether the solver or its polish draws random numbers; absent in older records
-  // Limits in force: max_evaluations, max_seconds (0: none), target. Empty in records of versions that did not write it.
+  // Limits in force: max_evaluations, max_seconds (0: none), target. Empty in records of versions that did
+  // not write it.
   std::map<std::string, double> budget;
 
   std::string termination;                // converged, settled, stalled, target_reached, max_evaluations, ...
@@ -104,18 +106,20 @@ struct RunRecord {
   double seconds = 0;
   std::vector<TracePoint> trace;
   std::string group;  // of data sets with groups: the one that this member is in
-  // Figures beyond cost and errors by name; reports/kinds/entropy/entropy_tables.hpp and reports/kinds/entropy/window_tables.hpp say which.
+  // Figures beyond cost and errors by name; reports/kinds/entropy/entropy_tables.hpp and
+  // reports/kinds/entropy/window_tables.hpp say which.
   std::map<std::string, double> statistics;
-  // Lists of figures by name: kIdentifiabilitySeries below, those of reports/kinds/entropy/entropy_tables.hpp and
-  // reports/kinds/fusion/fusion_tables.hpp. What is not finite is stored as null and read as not-a-number.
+  // Lists of figures by name: kIdentifiabilitySeries below, those of reports/kinds/entropy/entropy_tables.hpp
+  // and reports/kinds/fusion/fusion_tables.hpp. What is not finite is stored as null and read as
+  // not-a-number.
   std::map<std::string, std::vector<double>> series;
   std::vector<std::string> notes;  // remarks on this result, e.g. which parameters are barely determined
   RunContext context;
   std::string time_utc;  // ISO 8601 start of the run
 };
 
-// Series of a least-squares result with n free parameters (those whose bounds differ), in their order and relative to
-// |nominal| (half the box where nominal is 0):
+// Series of a least-squares result with n free parameters (those whose bounds differ), in their order and
+// relative to |nominal| (half the box where nominal is 0):
 //   singular_values      of the Jacobian, largest first (n)
 //   directions           unit right singular vectors in the same order, one after the other (n * n)
 //   standard_deviations  sqrt(J / (N - n) diag((J'J)^-1)) (n), null where the data say nothing
@@ -130,8 +134,8 @@ nlohmann::json to_json(const RunRecord& record);
 // Throws std::runtime_error naming the field, what was found and what was expected.
 RunRecord record_from_json(const nlohmann::json& json);
 
-// Whether `converged` was said though a step found without the problem's own derivatives would still gain: more than ten times
-// what the verdict's test allows, and at least 1e-6 of the cost.
+// Whether `converged` was said though a step found without the problem's own derivatives would still gain:
+// more than ten times what the verdict's test allows, and at least 1e-6 of the cost.
 bool false_verdict(const RunRecord& record);
 
 // One line, without a newline at its end.

@@ -99,7 +99,8 @@ bool is_sure(const Change& c, const Gate& gate, double alpha) {
   return rose == !std::signbit(gate.limit);
 }
 
-// A run that its budget ended says nothing about effort when the other side had another budget: less of it is not better.
+// A run that its budget ended says nothing about effort when the other side had another budget: less of it is
+// not better.
 bool stopped_by_other_budget(const ComparisonRow& before, const ComparisonRow& after) {
   if (before.shown->budget == after.shown->budget) return false;
   const auto stopped = [](const RunRecord* run) {
@@ -265,8 +266,8 @@ bool same_box(const RunRecord& a, const RunRecord& b) {
                     });
 }
 
-// Results of the old side that no limit can judge: their label is gone for their problem and data set, or what is there
-// has another dimension or box. Named once each.
+// Results of the old side that no limit can judge: their label is gone for their problem and data set, or
+// what is there has another dimension or box. Named once each.
 std::vector<std::string> without_partner(const RunComparison& comparison,
                                          const std::vector<RunRecord>& before,
                                          const std::vector<RunRecord>& after) {

@@ -1,21 +1,26 @@
 // Two sets of run records side by side: what changed, by how much, and whether that is more than chance.
 //
-// Rows are matched by problem, data set name, box and label, figures by metric (reports/regression/metrics.hpp). Per pair:
+// Rows are matched by problem, data set name, box and label, figures by metric
+// (reports/regression/metrics.hpp). Per pair:
 //   change = median(new) - median(old) over the repeats, absolute and relative to |median(old)|;
-//   Mann-Whitney's two-sided p, A12 and its name, the Hodges-Lehmann shift (reports/statistics/mann_whitney.hpp).
+//   Mann-Whitney's two-sided p, A12 and its name, the Hodges-Lehmann shift
+//   (reports/statistics/mann_whitney.hpp).
 // When is a change sure?
-//   no noise      one run on both sides without any randomness: no random solver, the same options, start (a random one: seed)
-//                 and data, not ended by a clock. Cost, errors and counts then repeat to the last bit, so every difference is real: there is nothing to
-//                 test. This never holds for times.
+//   no noise      one run on both sides without any randomness: no random solver, the same options, start (a
+//   random one: seed)
+//                 and data, not ended by a clock. Cost, errors and counts then repeat to the last bit, so
+//                 every difference is real: there is nothing to test. This never holds for times.
 //   significant   at least two runs on one side, and p, corrected after Holm, is at most alpha.
-//   else          it is not: single runs, too few runs for any p to get that low (smallest_p), or p is too high.
-// Holm's correction runs over the gated tests together, and over the other tests together: many figures are looked at, and the
-// verdict should have one level, alpha, whatever their number.
+//   else          it is not: single runs, too few runs for any p to get that low (smallest_p), or p is too
+//                 high.
+// Holm's correction runs over the gated tests together, and over the other tests together: many figures are
+// looked at, and the verdict should have one level, alpha, whatever their number.
 //
-// Effort (evaluations, iterations, seconds) has no better direction where budgets differ and one of them ended a run.
+// Effort (evaluations, iterations, seconds) has no better direction where budgets differ and one of them
+// ended a run.
 //
-// A gate is a metric with a limit, "J may not rise by more than 0.1 %". It fails when the change passes the limit AND is sure.
-// Times that were taken on different processors are not gated unless asked for.
+// A gate is a metric with a limit, "J may not rise by more than 0.1 %". It fails when the change passes the
+// limit AND is sure. Times that were taken on different processors are not gated unless asked for.
 #pragma once
 
 #include <functional>
@@ -92,8 +97,8 @@ struct RunComparison {
   std::size_t count(Finding finding) const;
 };
 
-// Why gates that were asked for did not judge all they are there for, "" when they did: "nothing to compare: no limit of --fail-on meets a
-// pair of results; no partner on the new side for 'lm' of demo".
+// Why gates that were asked for did not judge all they are there for, "" when they did: "nothing to compare:
+// no limit of --fail-on meets a pair of results; no partner on the new side for 'lm' of demo".
 std::string nothing_to_compare(const RunComparison& comparison);
 
 // Throws std::invalid_argument when a side gives two results one name.

@@ -20,7 +20,8 @@ struct Direction {
   const char* suffix;
   Better better;
 };
-// Of the statistics in reports/kinds/entropy/entropy_tables.hpp and reports/kinds/entropy/window_tables.hpp; others have no direction.
+// Of the statistics in reports/kinds/entropy/entropy_tables.hpp and reports/kinds/entropy/window_tables.hpp;
+// others have no direction.
 constexpr std::array<Direction, 9> kDirections{{{"windows_per_second", "", Better::Higher},
                                                 {"at_optimum", "", Better::Higher},
                                                 {"gain_", "", Better::Higher},

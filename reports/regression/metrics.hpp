@@ -11,12 +11,14 @@ namespace odobench {
 
 // Names, in this order:
 //   J                                       cost
-//   total, total_x, total_y, total_theta    table 42: sums of e_sr over the trajectories [m], [rad], total mixed
+//   total, total_x, total_y, total_theta    table 42: sums of e_sr over the trajectories [m], [rad], total
+//   mixed
 //   e_sr.TRAJECTORY.x, .y, .theta           mean over the repetitions of the largest error [m], [rad]
 //   evaluations, iterations, seconds        effort; only of runs, not of given parameters
 //   any key of RunRecord::statistics        alphabetical
-// A run without the figure that other runs of the row have (it failed) counts as worst: +infinity, -infinity where higher is
-// better. Not-a-number of a run counts the same. Where nothing says which way is better, it stays not-a-number.
+// A run without the figure that other runs of the row have (it failed) counts as worst: +infinity, -infinity
+// where higher is better. Not-a-number of a run counts the same. Where nothing says which way is better, it
+// stays not-a-number.
 struct Metric {
   std::string name;
   std::string family;  // what a list of metrics may call it by as well: "e_sr", "statistics"; else the name

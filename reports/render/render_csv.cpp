@@ -17,7 +17,8 @@ bool is_number(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-// A spreadsheet would compute what begins like this: the usual apostrophe makes it text. Numbers and a lone dash are harmless.
+// A spreadsheet would compute what begins like this: the usual apostrophe makes it text. Numbers and a lone
+// dash are harmless.
 std::string guarded(const std::string& text) {
   if (text.size() < 2 || std::string_view("=+-@").find(text.front()) == std::string_view::npos) return text;
   return is_number(text) ? text : "'" + text;

@@ -1,7 +1,8 @@
 // LaTeX: one table environment per table, of booktabs rules and siunitx columns.
 //
-// A table that is wider than a page is cut between groups into blocks below each other, as on a terminal; one that is
-// longer goes on in further environments. What still is too wide (a single column of long numbers) is shrunk.
+// A table that is wider than a page is cut between groups into blocks below each other, as on a terminal; one
+// that is longer goes on in further environments. What still is too wide (a single column of long numbers) is
+// shrunk.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -88,7 +88,8 @@ void mark_column(Table& table, std::size_t column) {
   for (Cell* cell : competing) cell->best = ties(cell);
 }
 
-// For the formats that people read: what is best and what is worse than nominal, explained below the first table that needs it.
+// For the formats that people read: what is best and what is worse than nominal, explained below the first
+// table that needs it.
 void mark_for_people(std::vector<Table>& tables, Format format) {
   bool explained = false;
   for (Table& table : tables) {

@@ -26,8 +26,8 @@ struct Cell {
   Notation notation = Notation::Fixed;
   std::optional<double> difference;  // to a reference; same notation, signed, in brackets
   std::string mark;                  // short sign after the number, explained in a note
-  // What another repetition may change about the number: the spread over repeats, infinity where there was one only of something
-  // random; none: it repeats up to rounding (kRepeats of it).
+  // What another repetition may change about the number: the spread over repeats, infinity where there was
+  // one only of something random; none: it repeats up to rounding (kRepeats of it).
   std::optional<double> noise;
   bool best = false;   // of its column, see mark_best
   bool worse = false;  // than the reference row, see mark_best
@@ -73,10 +73,12 @@ struct Table {
 inline constexpr double kRepeats = 1e-9;
 
 // In the columns that have a better direction, among the rows that are no references:
-//   Cell::best   the lowest (highest) finite number and those that tie with it, if it is better than the reference row (where there is
-//                exactly one) and than all others by more than its own noise. What ties: reads the same, or differs by at most that
-//                noise; of numbers that differ by rounding only, the least noisy one speaks. Where all tie, nothing is best.
-//   Cell::worse  worse than the reference row by more than its noise (rounding where that is unknown), or not finite though that is.
+//   Cell::best   the lowest (highest) finite number and those that tie with it, if it is better than the
+//                reference row (where there is exactly one) and than all others by more than its own noise.
+//                What ties: reads the same, or differs by at most that noise; of numbers that differ by
+//                rounding only, the least noisy one speaks. Where all tie, nothing is best.
+//   Cell::worse  worse than the reference row by more than its noise (rounding where that is unknown), or not
+//                finite though that is.
 // render() does so itself for the formats that people read.
 void mark_best(Table& table);
 // "!: worse than nominal." where a cell is, else "".
@@ -101,23 +103,26 @@ struct RenderOptions {
 std::string render(const std::vector<Table>& tables, Format format, const RenderOptions& options = {});
 
 // The renderers behind it.
-//   console  aligned columns; text columns wrap, then the table is split into blocks of columns; the best values have a
-//            star, which a line below the first such table explains, or are bold
+//   console  aligned columns; text columns wrap, then the table is split into blocks of columns; the best
+//            values have a star, which a line below the first such table explains, or are bold
 //   md       GitHub tables, a heading each; the best values are bold
-//   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line `#note,text` per
-//            note; an empty line between tables. A column with differences (marks) is followed by a column for them.
-//   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id: cell},..],"notes":[..]}]};
-//            a cell is null, a string, a number, or {"value","difference","mark name"} when it has more than a value
-//   latex    booktabs and siunitx 3 (S columns, \unit), groups of columns under a common heading, differences in brackets in a
-//            column of their own; cut into blocks that fit a line of 345 pt and into continued tables that fit a page; the best
-//            values are bold; a comment names the packages
+//   csv      RFC 4180 with CRLF. Per table: a line `#table,id,title`, the header, the rows, a line
+//            `#note,text` per note; an empty line between tables. A column with differences (marks) is
+//            followed by a column for them.
+//   json     {"schema_version":1,"tables":[{"id","title","columns":[..],"rows":[{column id:
+//            cell},..],"notes":[..]}]}; a cell is null, a string, a number, or {"value","difference","mark
+//            name"} when it has more than a value
+//   latex    booktabs and siunitx 3 (S columns, \unit), groups of columns under a common heading, differences
+//            in brackets in a column of their own; cut into blocks that fit a line of 345 pt and into
+//            continued tables that fit a page; the best values are bold; a comment names the packages
 std::string render_console(const std::vector<Table>& tables, const RenderOptions& options);
 std::string render_markdown(const std::vector<Table>& tables);
 std::string render_csv(const std::vector<Table>& tables);
 std::string render_json(const std::vector<Table>& tables);
 std::string render_latex(const std::vector<Table>& tables);
 
-// RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside doubled.
+// RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside
+// doubled.
 std::string csv_field(const std::string& text);
 
 // A line of a list, "- text", with what Markdown would interpret escaped.

@@ -66,7 +66,8 @@ void add(Comparison& comparison, const RunRecord& record) {
   comparison.rows.back().runs.push_back(&record);
 }
 
-// Tells several groups apart; the check sum only where the names do not: of the data, or of the box where those are the same.
+// Tells several groups apart; the check sum only where the names do not: of the data, or of the box where
+// those are the same.
 void name_groups(std::vector<Comparison>& groups, const std::vector<std::string>& check_sums) {
   if (groups.size() < 2) return;
   for (std::size_t i = 0; i < groups.size(); ++i) {

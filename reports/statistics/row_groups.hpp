@@ -34,8 +34,8 @@ struct Comparison {
   std::optional<double> best_cost() const;
 };
 
-// In order of first appearance; data sets of the same name but another check sum are kept apart, and so are boxes. The records must
-// outlive the result.
+// In order of first appearance; data sets of the same name but another check sum are kept apart, and so are
+// boxes. The records must outlive the result.
 std::vector<Comparison> compare(const std::vector<RunRecord>& records);
 
 // Equal check sums, or one that an older record does not have.
@@ -45,8 +45,9 @@ bool same_problem_box(const std::string& a, const std::string& b);
 // sets of one name, or an evaluation called like a run.
 void require_unique(const std::vector<Comparison>& groups);
 
-// What a repetition of the row may change about a figure of its runs, for Cell::noise: the interquartile range over several runs;
-// infinity of a single run that draws random numbers, or may (older records do not say), or that a clock ended; none else.
+// What a repetition of the row may change about a figure of its runs, for Cell::noise: the interquartile
+// range over several runs; infinity of a single run that draws random numbers, or may (older records do not
+// say), or that a clock ended; none else.
 std::optional<double> noise_over_runs(const ComparisonRow& row,
                                       const std::function<std::optional<double>(const RunRecord&)>& figure);
 // How a figure differs although one run repeats to the bit: times. Infinity of a single run.

@@ -1,5 +1,5 @@
-// Two solvers for costs made of independent quadratic blocks (problems/block_quadratic.hpp): between them they say how
-// far any other method is from the best there is.
+// Two solvers for costs made of independent quadratic blocks (problems/block_quadratic.hpp): between them
+// they say how far any other method is from the best there is.
 #pragma once
 
 #include "solvers/solver.hpp"

@@ -4,10 +4,12 @@
 // the box is put on the bound; one that this would leave at u is not evaluated. Deterministic, needs no
 // derivatives, survives plateaus and non-finite costs, and crawls in a rotated valley: it is the baseline of
 // the others (a compass search: Kolda, Lewis, Torczon, SIAM Review 45, 2003).
-// On a problem with a lattice of admissible values it walks there instead, from the admissible point nearest to the
-// start: a scan looks at every change of one parameter to another of its levels, and makes the best one. The first
-// among equals wins, in the order of the parameters and, within one, from the highest level down (T. Stirblys, Kaunas
-// 2015, section 2.2.2, for the levels -1, 0, 1). Iterations count the scans, the last and unsuccessful one included.
+// On a problem with a lattice of admissible values it walks there instead, from the admissible point nearest
+// to the start: a scan looks at every change of one parameter to another of its levels, and makes the best
+// one. The first among equals wins, in the order of the parameters and, within one, from the highest level
+// down (T. Stirblys, Kaunas
+// 2015, section 2.2.2, for the levels -1, 0, 1). Iterations count the scans, the last and unsuccessful one
+// included.
 #pragma once
 
 #include "solvers/solver.hpp"

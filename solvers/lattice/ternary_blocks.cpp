@@ -105,7 +105,8 @@ class Tree {
     }
   }
 
-  // A few sweeps of coordinate descent on the box: near the relaxation's optimum is near enough, see lower_bound.
+  // A few sweeps of coordinate descent on the box: near the relaxation's optimum is near enough, see
+  // lower_bound.
   Eigen::VectorXd relax(const Node& node) const {
     const auto size = static_cast<Eigen::Index>(node.free.size());
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size);

@@ -15,8 +15,8 @@ inline int padded(int n) {
 }
 }  // namespace ternary
 
-// Throws std::invalid_argument on a block that is not square, finite, symmetric and positive definite, or whose sizes
-// do not agree; at most 64 blocks.
+// Throws std::invalid_argument on a block that is not square, finite, symmetric and positive definite, or
+// whose sizes do not agree; at most 64 blocks.
 void check_blocks(const std::vector<QuadraticBlock>& blocks);
 
 // Exact minimum of t'Qt - g't over {-1, 0, 1}^n for any n, depth first.

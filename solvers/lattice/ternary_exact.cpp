@@ -30,9 +30,10 @@ void linear_terms(const double* g, int n, double* out) {
     }
 }
 
-// One block of at most kLargestTable variables: t'Qt in a table of rows (the later variables) and columns (the first
-// ones), to which a linear term adds one number per row and one per column. t and -t share an entry, whose value is the
-// better of their costs, t'Qt - |g't|: the upper half of the rows is enough, beginning with the row of zeros.
+// One block of at most kLargestTable variables: t'Qt in a table of rows (the later variables) and columns
+// (the first ones), to which a linear term adds one number per row and one per column. t and -t share an
+// entry, whose value is the better of their costs, t'Qt - |g't|: the upper half of the rows is enough,
+// beginning with the row of zeros.
 class TableBlock {
  public:
   explicit TableBlock(const Eigen::MatrixXd& q)
@@ -102,8 +103,9 @@ class TableBlock {
     for (int i = first_; i < n_; ++i, row /= 3) t[i] = row % 3 - 1;
   }
 
-  // With s = g - 2 Q t of the fixed variables, t_i is 1 in every optimum when even the worst choice of the free others
-  // leaves s_i above Q_ii, -1 mirrored, 0 when even the best keeps |s_i| below it. Returns how many stay free.
+  // With s = g - 2 Q t of the fixed variables, t_i is 1 in every optimum when even the worst choice of the
+  // free others leaves s_i above Q_ii, -1 mirrored, 0 when even the best keeps |s_i| below it. Returns how
+  // many stay free.
   int fix_what_no_choice_can_turn(const double* g, double* t) {
     int free = n_;
     for (int i = 0; i < n_; ++i) {

@@ -1,5 +1,5 @@
-// The innermost loops of the ternary searches, in several vector widths chosen at run time. Every width does the same
-// operations in the same order on each element: the results are the same to the last bit.
+// The innermost loops of the ternary searches, in several vector widths chosen at run time. Every width does
+// the same operations in the same order on each element: the results are the same to the last bit.
 #pragma once
 
 namespace odobench {
@@ -11,8 +11,8 @@ namespace odobench::ternary {
 inline constexpr int kPad = 8;  // arrays are padded to a multiple of this, whatever the width
 inline constexpr int kMovesPerEntry = 100;
 
-// Greedy descent of one block: t' Q t - g' t over t in {-1, 0, 1}^n, lowered by `gain` so far. Entries at and beyond n
-// have gradient 0 and a huge diagonal, so that they never win.
+// Greedy descent of one block: t' Q t - g' t over t in {-1, 0, 1}^n, lowered by `gain` so far. Entries at and
+// beyond n have gradient 0 and a huge diagonal, so that they never win.
 struct GreedyBlock {
   int n, padded;
   const double* twice_q;   // padded columns of 2 Q, n of them
@@ -28,8 +28,8 @@ struct GreedyBlock {
 struct Kernel {
   // Runs every block to its local optimum.
   void (*greedy)(GreedyBlock* blocks, int count);
-  // The row i, the first among equals, of the smallest table[i * columns + j] - |column[j] + row[i]|; `columns` is
-  // a multiple of kPad.
+  // The row i, the first among equals, of the smallest table[i * columns + j] - |column[j] + row[i]|;
+  // `columns` is a multiple of kPad.
   int (*smallest)(const double* table, const double* row, int rows, const double* column, int columns);
 };
 

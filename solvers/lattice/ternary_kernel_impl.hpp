@@ -1,5 +1,6 @@
-// Templates behind ternary_kernel.hpp, compiled once per vector width. Included by ternary_kernel_*.cpp only. Everything
-// has internal linkage and uses no inline function of another header, so that no wide instruction leaks elsewhere.
+// Templates behind ternary_kernel.hpp, compiled once per vector width. Included by ternary_kernel_*.cpp only.
+// Everything has internal linkage and uses no inline function of another header, so that no wide instruction
+// leaks elsewhere.
 #pragma once
 
 #include <string.h>
@@ -30,7 +31,8 @@ inline void store(double* to, const Pack<W>& v) {
   memcpy(to, &v, sizeof v);
 }
 
-// One scan: the largest gain above 0, the first among equals in the order even 0, odd 0, even 1, ...; whether there was one.
+// One scan: the largest gain above 0, the first among equals in the order even 0, odd 0, even 1, ...; whether
+// there was one.
 template <int W>
 inline bool step(GreedyBlock& b) {
   Pack<W> best = {};  // strictly greater than 0 wins

@@ -20,15 +20,15 @@ constexpr double kHardlyDamped = 1e8;  // a trust-region radius
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Ceres writes warnings about rejected steps to the standard error through glog, whatever its own logging options
-// say. glog has only a process-wide switch; nothing but Ceres uses it here.
+// Ceres writes warnings about rejected steps to the standard error through glog, whatever its own logging
+// options say. glog has only a process-wide switch; nothing but Ceres uses it here.
 void silence_glog() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
 }
 
-// What the cost function shares with the iteration callback and the outer loop: the point, which of its coordinates
-// are free, the derivatives last evaluated, as Ceres gets them, and where.
+// What the cost function shares with the iteration callback and the outer loop: the point, which of its
+// coordinates are free, the derivatives last evaluated, as Ceres gets them, and where.
 struct Workspace {
   Run& run;
   bool full = false;
@@ -43,7 +43,8 @@ struct Workspace {
   std::exception_ptr error;
 
   Eigen::Index rows() const { return full ? run.problem().residual_count() : run.dimension() + 1; }
-  // Evaluates at p unless that was done last; false where cost or derivatives are not finite or the driver says stop.
+  // Evaluates at p unless that was done last; false where cost or derivatives are not finite or the driver
+  // says stop.
   bool differentiate(const Vector& p);
 
   Vector point(const double* x) const {
@@ -79,8 +80,8 @@ bool Workspace::differentiate(const Vector& p) {
   return true;
 }
 
-// Sum of squares for Ceres on the free coordinates. Where only the cost is asked for, one residual carries it all:
-// Ceres then looks at nothing but the norm.
+// Sum of squares for Ceres on the free coordinates. Where only the cost is asked for, one residual carries it
+// all: Ceres then looks at nothing but the norm.
 class Residuals final : public ceres::CostFunction {
  public:
   explicit Residuals(Workspace& work) : work_(work) {
@@ -119,8 +120,8 @@ class Residuals final : public ceres::CostFunction {
   Workspace& work_;
 };
 
-// Ends a round when the driver says stop, when the KKT conditions hold, or when a free coordinate has arrived at a
-// bound that should hold it: from there on Ceres' projected steps only creep.
+// Ends a round when the driver says stop, when the KKT conditions hold, or when a free coordinate has arrived
+// at a bound that should hold it: from there on Ceres' projected steps only creep.
 class RoundControl final : public ceres::IterationCallback {
  public:
   RoundControl(Workspace& work, const std::vector<double>& x, const CeresOptions& options)
@@ -260,7 +261,8 @@ Outcome active_set_rounds(Workspace& work, const CeresOptions& options) {
     const Round result = solve_free(work, options, radius, std::min(left, options.round_iterations));
     if (!refresh(work)) return broken(work);
     left -= std::max(1, result.iterations);
-    // Ceres scales its damping by the present columns of J: where they shrink fast it creeps, and hardly damped steps get on.
+    // Ceres scales its damping by the present columns of J: where they shrink fast it creeps, and hardly
+    // damped steps get on.
     if (result.iterations >= options.round_iterations)
       radius = radius == options.radius ? kHardlyDamped : options.radius;
     release = !result.arrived;

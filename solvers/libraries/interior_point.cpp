@@ -24,7 +24,8 @@ bool exact_fit(const Run& run) {
   return run.best_cost() == 0 && run.problem().has_normal_equations();
 }
 
-// Leaves Ipopt's code for the duration of a call-back. Declared before anything whose destruction could throw.
+// Leaves Ipopt's code for the duration of a call-back. Declared before anything whose destruction could
+// throw.
 class Outside {
  public:
   explicit Outside(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
@@ -36,8 +37,8 @@ class Outside {
   std::unique_lock<std::mutex>& lock_;
 };
 
-// Ipopt asks for cost, gradient and Hessian of a point one by one: cost(u) is kept, and one derivative call serves
-// gradient and Hessian.
+// Ipopt asks for cost, gradient and Hessian of a point one by one: cost(u) is kept, and one derivative call
+// serves gradient and Hessian.
 class BoxProgram final : public Ipopt::TNLP {
  public:
   using Index = Ipopt::Index;
@@ -145,9 +146,9 @@ class BoxProgram final : public Ipopt::TNLP {
   }
 
  private:
-  // Secant estimate S of the part of half the Hessian that J'J leaves out, sum r_i (second derivatives of r_i), after
-  // Dennis, Gay, Welsch 1981 (NL2SOL): S is sized, then receives a symmetric rank-one update, so that S s = y,
-  // s the last step, y = change of J'r minus J'J s.
+  // Secant estimate S of the part of half the Hessian that J'J leaves out, sum r_i (second derivatives of
+  // r_i), after Dennis, Gay, Welsch 1981 (NL2SOL): S is sized, then receives a symmetric rank-one update, so
+  // that S s = y, s the last step, y = change of J'r minus J'J s.
   void correct() {
     const Eigen::Index m = derivatives_at_.size();
     if (correction_.size() == 0) correction_ = Matrix::Zero(m, m);
@@ -197,7 +198,8 @@ class BoxProgram final : public Ipopt::TNLP {
   std::exception_ptr error_;
 };
 
-// `again`: a further start, from the end of another; it stays there instead of stepping back to the middle of the box.
+// `again`: a further start, from the end of another; it stays there instead of stepping back to the middle of
+// the box.
 void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options, bool again) {
   list.SetStringValue("sb", "yes");
   list.SetIntegerValue("print_level", 0);
@@ -209,7 +211,8 @@ void set_options(Ipopt::OptionsList& list, const InteriorPointOptions& options, 
     list.SetNumericValue("bound_push", 1e-9);
     list.SetNumericValue("bound_frac", 1e-9);
   }
-  // MUMPS 5.5 counts what it would save of itself at every call, which takes longer than solving a dozen equations.
+  // MUMPS 5.5 counts what it would save of itself at every call, which takes longer than solving a dozen
+  // equations.
   list.SetIntegerValue("min_refinement_steps", 0);
   list.SetStringValue("nlp_scaling_method", options.nlp_scaling);
   list.SetNumericValue("tol", options.tolerance);
@@ -247,7 +250,8 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status, const BoxProgram& prog
   }
 }
 
-// One call of Ipopt, from the start of the run or from its best point, with the cost there as unit; `iterations` counts on.
+// One call of Ipopt, from the start of the run or from its best point, with the cost there as unit;
+// `iterations` counts on.
 Outcome start_once(Run& run, InteriorPointOptions options, int& iterations, bool again) {
   options.iterations -= iterations;
   std::unique_lock<std::mutex> lock(ipopt_mutex());
@@ -274,7 +278,8 @@ Outcome start_once(Run& run, InteriorPointOptions options, int& iterations, bool
   return outcome;
 }
 
-// A bounded step from the best point promises more than this part of the cost: by normal equations, one evaluation.
+// A bounded step from the best point promises more than this part of the cost: by normal equations, one
+// evaluation.
 bool promising(Run& run, double part) {
   NormalEquations e;
   if (!run.problem().has_normal_equations() || !std::isfinite(run.normal_equations(run.best(), e)))

@@ -2,10 +2,10 @@
 
 namespace odobench {
 
-// Left out: NLopt's NEWUOA with bounds (its subproblem, an MMA run without limit or stop, may never return; the one without bounds
-// runs on folded coordinates instead), LBFGS_NOCEDAL (not built into 2.7.1), and the AUGLAG family (an
-// augmented Lagrangian of constraints other than bounds, which no problem here has). The MLSL variants with built-in
-// choice of the local method are the two MLSL rows with local=...
+// Left out: NLopt's NEWUOA with bounds (its subproblem, an MMA run without limit or stop, may never return;
+// the one without bounds runs on folded coordinates instead), LBFGS_NOCEDAL (not built into 2.7.1), and the
+// AUGLAG family (an augmented Lagrangian of constraints other than bounds, which no problem here has). The
+// MLSL variants with built-in choice of the local method are the two MLSL rows with local=...
 const std::vector<NloptAlgorithm>& nlopt_algorithms() {
   static const std::vector<NloptAlgorithm> table = [] {
     std::vector<NloptAlgorithm> rows;

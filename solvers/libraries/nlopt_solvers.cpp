@@ -16,7 +16,8 @@
 namespace odobench {
 namespace {
 
-// StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far below.
+// StoGO and AGS know no forced stop. AGS ends when a value lies below its stop value, so it is handed one far
+// below.
 constexpr double kStopValue = -1e200;
 constexpr double kBelowStopValue = -1e250;
 constexpr double kFold = 0.5;  // width of the bent zone for methods without bounds, in units of half the box
@@ -216,7 +217,8 @@ Outcome ended(nlopt_result code, const std::string& how) {
   return {by_tolerance ? Termination::Settled : Termination::Stalled, how};
 }
 
-// The projected gradient at the lowest point that has one, relative to the cost there; coordinates next to a bound that
+// The projected gradient at the lowest point that has one, relative to the cost there; coordinates next to a
+// bound that
 // -g points to count as on it, and that point is evaluated. No number without a gradient.
 double slope_on_bounds(Run& run, const Objective& objective, double xtol) {
   if (!objective.has_gradient()) return std::numeric_limits<double>::infinity();

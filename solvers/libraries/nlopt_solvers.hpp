@@ -1,22 +1,24 @@
 // The algorithms of NLopt 2.7.1 (S. G. Johnson) that apply to a box without other constraints, as nlopt:NAME.
 //
-// They see unit coordinates u in [-1, 1]^m and the cost divided by its value where they start, so that neither the units
-// of the parameters nor the scale of the cost matters (SLSQP stops at once on the raw calibration cost). A point whose
-// cost or gradient is not finite gets a finite cost above every cost seen. Budget, clock and interruption are the driver's.
+// They see unit coordinates u in [-1, 1]^m and the cost divided by its value where they start, so that
+// neither the units of the parameters nor the scale of the cost matters (SLSQP stops at once on the raw
+// calibration cost). A point whose cost or gradient is not finite gets a finite cost above every cost seen.
+// Budget, clock and interruption are the driver's.
 //
-// A local method that stops is started again from the best point, with the cost there as the new unit, while that gains
-// more than restart_gain of the cost and the projected gradient is above gradient_tolerance of the present cost, at most
-// `restarts` times. NLopt's tolerances do not show optimality: what may be said of the end is the driver's business.
+// A local method that stops is started again from the best point, with the cost there as the new unit, while
+// that gains more than restart_gain of the cost and the projected gradient is above gradient_tolerance of the
+// present cost, at most `restarts` times. NLopt's tolerances do not show optimality: what may be said of the
+// end is the driver's business.
 //
-// Random numbers: NLopt's generator is thread-local since 2.4 and is seeded here from the run's engine before it
-// starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and AGS
-// have static variables besides; one mutex lets one run of them at a time through, evaluations included.
+// Random numbers: NLopt's generator is thread-local since 2.4 and is seeded here from the run's engine before
+// it starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and
+// AGS have static variables besides; one mutex lets one run of them at a time through, evaluations included.
 //
-// NEWUOA knows no bounds: it works on coordinates that fold onto the box (solvers/boundary_map.hpp). NLopt's bounded variant is left
-// out, since its subproblem cannot be interrupted and may not return.
+// NEWUOA knows no bounds: it works on coordinates that fold onto the box (solvers/boundary_map.hpp). NLopt's
+// bounded variant is left out, since its subproblem cannot be interrupted and may not return.
 //
-// What cannot be cured from outside: StoGO calls exit() when a denominator of its local search is exactly zero (not seen in 400 runs
-// on the classic problems and on functions of one variable).
+// What cannot be cured from outside: StoGO calls exit() when a denominator of its local search is exactly
+// zero (not seen in 400 runs on the classic problems and on functions of one variable).
 #pragma once
 
 #include "solvers/solver.hpp"

@@ -24,8 +24,8 @@ bool LocalModel::evaluate(Run& run, const Vector& u) {
   return factored_ ? evaluate_residuals(run, u) : evaluate_normal_equations(run, u);
 }
 
-// `squares`: |J_i|^2 / |r|^2 at the present point, whose |r|^2 is `cost`. What was met before is kept in the same unit, so
-// that no square root comes between the cost's scale and the step.
+// `squares`: |J_i|^2 / |r|^2 at the present point, whose |r|^2 is `cost`. What was met before is kept in the
+// same unit, so that no square root comes between the cost's scale and the step.
 void LocalModel::remember(const Vector& squares, double cost) {
   damping_ = damping_.size() == 0 ? squares : (damping_ * (cost_ / cost)).cwiseMax(squares);
   if (scale_ == StepScale::Box) damping_.setConstant(damping_.maxCoeff());

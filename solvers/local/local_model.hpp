@@ -1,5 +1,5 @@
-// The linear model of a run's residuals around a point, and its damped steps inside the box: what Levenberg-Marquardt
-// works with.
+// The linear model of a run's residuals around a point, and its damped steps inside the box: what
+// Levenberg-Marquardt works with.
 #pragma once
 
 #include "solvers/run.hpp"
@@ -12,14 +12,15 @@ enum class StepScale {
   Box             // D_i the same for all: unit coordinates, whose unit is half the box
 };
 
-// Everything is in units of |r| at the point, so that no factor on the cost changes a bit or leaves the range of doubles.
+// Everything is in units of |r| at the point, so that no factor on the cost changes a bit or leaves the range
+// of doubles.
 class LocalModel {
  public:
   // `problem` decides the form: its own normal equations, or a QR factor of the Jacobian.
   LocalModel(const Problem& problem, StepScale scale);
 
-  // Derivatives at u, one evaluation of the run. False, and the model stays as it was, where they are not finite or the
-  // run has been stopped.
+  // Derivatives at u, one evaluation of the run. False, and the model stays as it was, where they are not
+  // finite or the run has been stopped.
   bool evaluate(Run& run, const Vector& u);
   double cost() const { return cost_; }
   // max over free i of |J'r|_i / (|J_i| |r|), see solvers/optimality.hpp.

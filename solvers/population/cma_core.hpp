@@ -42,10 +42,10 @@ class CmaDescent {
   double sigma() const { return sigma_; }
   // Largest axis ratio of the sampling distribution, sqrt(cond C).
   double axis_ratio() const;
-  // Why the descent is over, nothing while it goes on. Best costs of the last 10 + 30 m / lambda generations and
-  // all costs of the newest lie within cost_tolerance |J|; every standard deviation is below step_tolerance
-  // times the first sigma; axis ratio above 1e7; a step along an axis or coordinate no longer changes the
-  // mean; no progress of the median over a long history; a covariance that is no longer finite.
+  // Why the descent is over, nothing while it goes on. Best costs of the last 10 + 30 m / lambda generations
+  // and all costs of the newest lie within cost_tolerance |J|; every standard deviation is below
+  // step_tolerance times the first sigma; axis ratio above 1e7; a step along an axis or coordinate no longer
+  // changes the mean; no progress of the median over a long history; a covariance that is no longer finite.
   std::optional<DescentEnd> finished(double cost_tolerance, double step_tolerance) const;
 
  private:

@@ -1,19 +1,20 @@
-// Differential evolution with the memory of its own successes and a shrinking population: L-SHADE of R. Tanabe and
-// A. Fukunaga (IEEE CEC 2014), its crossover in the frame of the population (S.-M. Guo and C.-C. Yang, IEEE Trans.
-// Evol. Comput. 19, 2015).
+// Differential evolution with the memory of its own successes and a shrinking population: L-SHADE of R.
+// Tanabe and A. Fukunaga (IEEE CEC 2014), its crossover in the frame of the population (S.-M. Guo and C.-C.
+// Yang, IEEE Trans. Evol. Comput. 19, 2015).
 //
 // Every individual x of the population (N of them, m coordinates) makes a trial
 //     v = x + F (p - x) + F (a - b)                                          (D1) current-to-pbest/1
-// p: one of the best max(2, `greed` N), a: another individual, b: another one or one of the archive. With probability
-// `frame` the crossover of v with x is done in the coordinates of the eigenvectors B of the covariance of the better
-// half, else in those of the box:
+// p: one of the best max(2, `greed` N), a: another individual, b: another one or one of the archive. With
+// probability `frame` the crossover of v with x is done in the coordinates of the eigenvectors B of the
+// covariance of the better half, else in those of the box:
 //     t = B c,   c_i = (B'v)_i if u_i < CR or i = j, else (B'x)_i            (D2) u_i uniform, j drawn
-// A trial no worse than x takes its place; a better one sends x into the archive (at most `archive` N, a random one
-// leaves). F is drawn from a Cauchy, CR from a normal distribution of width 0.1 around one of `memory` places that hold
-// weighted means (Lehmer means, weights: the gains) of the values that succeeded, one place renewed a generation.
+// A trial no worse than x takes its place; a better one sends x into the archive (at most `archive` N, a
+// random one leaves). F is drawn from a Cauchy, CR from a normal distribution of width 0.1 around one of
+// `memory` places that hold weighted means (Lehmer means, weights: the gains) of the values that succeeded,
+// one place renewed a generation.
 //     N = N_0 + (4 - N_0) e / E                                              (D3) e of E evaluations made
-// x lives in the coordinates of solvers/boundary_map.hpp; a coordinate that leaves them goes half the way back to the
-// parent's.
+// x lives in the coordinates of solvers/boundary_map.hpp; a coordinate that leaves them goes half the way
+// back to the parent's.
 #pragma once
 
 #include "solvers/solver.hpp"

@@ -1,6 +1,8 @@
 // Preloaded into a program, makes one of its file operations fail or kills it there:
-//   ODOBENCH_FAULT=CALL:N:EFFECT   the N-th (from 1) CALL: open (for writing), write, close, rename, mkdir, ftruncate;
-//                                  EFFECT: a number of errno, "short" (half of the bytes, then ENOSPC) or "kill"
+//   ODOBENCH_FAULT=CALL:N:EFFECT   the N-th (from 1) CALL: open (for writing), write, close, rename, mkdir,
+//   ftruncate;
+//                                  EFFECT: a number of errno, "short" (half of the bytes, then ENOSPC) or
+//                                  "kill"
 //   ODOBENCH_FAULT_MARK=FILE       made when it happens
 // Descriptors 0 to 2 are left alone.
 #include <dlfcn.h>

@@ -1,5 +1,6 @@
-// A target of libFuzzer over one format that the program reads: ODOBENCH_FUZZ=NAME chooses it (tests/support/formats.hpp lists
-// them). What a user must not see ends the process with the input that shows it. scripts/fuzz.sh builds and runs it.
+// A target of libFuzzer over one format that the program reads: ODOBENCH_FUZZ=NAME chooses it
+// (tests/support/formats.hpp lists them). What a user must not see ends the process with the input that shows
+// it. scripts/fuzz.sh builds and runs it.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +22,8 @@ const Format& chosen_format() {
   return format;
 }
 
-// Work that may be asked for, but takes longer than a fuzzer waits: ten thousand repetitions, a population of a million.
+// Work that may be asked for, but takes longer than a fuzzer waits: ten thousand repetitions, a population of
+// a million.
 bool asks_for_much(const std::string& bytes) {
   const std::string& name = chosen_format().name;
   if (name != "configuration" && name != "options") return false;

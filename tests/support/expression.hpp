@@ -1,6 +1,6 @@
-// Value of a formula as text, such as "b1*(1-exp(-b2*x))", in long double: numbers, names, + - * / ^, parentheses and the
-// functions exp, cos, sin, atan; pi. Written for the models of NIST's regression problems, which the program computes by
-// functions of its own.
+// Value of a formula as text, such as "b1*(1-exp(-b2*x))", in long double: numbers, names, + - * / ^,
+// parentheses and the functions exp, cos, sin, atan; pi. Written for the models of NIST's regression
+// problems, which the program computes by functions of its own.
 #pragma once
 
 #include <cctype>

@@ -12,8 +12,8 @@
 
 namespace odobench::testing {
 
-// A rigid robot on a circle at constant speed, without noise: an accelerometer that turns with it measures omega x v, the
-// frame's own velocity does not change. What the filter should find is known exactly.
+// A rigid robot on a circle at constant speed, without noise: an accelerometer that turns with it measures
+// omega x v, the frame's own velocity does not change. What the filter should find is known exactly.
 struct CircleRun {
   bool right_first =
       true;  // wheels front right, rear right, rear left, front left; else rear left, front left, ...

@@ -1,4 +1,5 @@
-// Every format that the program reads: valid examples, and the commands that read a file of it. For mutations and fuzzing.
+// Every format that the program reads: valid examples, and the commands that read a file of it. For mutations
+// and fuzzing.
 #pragma once
 
 #include <functional>
@@ -22,12 +23,14 @@ std::vector<std::string> format_names();
 // Throws std::invalid_argument.
 const Format& format_called(const std::string& name);
 
-// True for a control character other than the end of a line, a character that turns the direction of writing, or a byte that is not UTF-8.
+// True for a control character other than the end of a line, a character that turns the direction of writing,
+// or a byte that is not UTF-8.
 bool unprintable(const std::string& text);
 
-// What a user must never see of a command that read such a file, whatever its bytes are: "" or what is wrong. Exit codes other
-// than 0, 1, 2, 3; more or less than one line of error; control characters or invalid UTF-8; nan or inf where there is no
-// error and none in the input; temporary files left behind, or anything at all after an error.
+// What a user must never see of a command that read such a file, whatever its bytes are: "" or what is wrong.
+// Exit codes other than 0, 1, 2, 3; more or less than one line of error; control characters or invalid UTF-8;
+// nan or inf where there is no error and none in the input; temporary files left behind, or anything at all
+// after an error.
 std::string complaint_about(const ProcessResult& result, const TemporaryFolder& folder,
                             const std::string& input);
 

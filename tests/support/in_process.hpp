@@ -1,5 +1,5 @@
-// The program as a function of this process: a thousand runs in the time that starting it ten times takes, and sanitized where
-// the tests are.
+// The program as a function of this process: a thousand runs in the time that starting it ten times takes,
+// and sanitized where the tests are.
 #pragma once
 
 #include "tests/support/run_process.hpp"

@@ -20,8 +20,8 @@ struct JacobianErrors {
   double jacobian = 0;  // largest |J_ij - reference| / largest |reference| of the column, beyond rounding
 };
 
-// Derivatives of the reference by the five-point formula with steps of 1e-5 max(|x_j|, scale): in long double its own
-// error is about 1e-11 of the column at most for the problems
+// Derivatives of the reference by the five-point formula with steps of 1e-5 max(|x_j|, scale): in long double
+// its own error is about 1e-11 of the column at most for the problems
 // here. What rounding r_i in long double does to a difference is allowed for, entry by entry.
 inline JacobianErrors compare_jacobian(const Problem& problem, const Vector& x,
                                        const LongResiduals& reference, long double scale) {

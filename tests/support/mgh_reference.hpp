@@ -1,5 +1,6 @@
-// The residuals of the problems of More, Garbow and Hillstrom once more, plainly as the paper writes them and in any
-// precision: what problems/classic/mgh_*.cpp is checked against. T: long double, or a type of Boost.Multiprecision.
+// The residuals of the problems of More, Garbow and Hillstrom once more, plainly as the paper writes them and
+// in any precision: what problems/classic/mgh_*.cpp is checked against. T: long double, or a type of
+// Boost.Multiprecision.
 #pragma once
 
 #include <cmath>

@@ -14,8 +14,8 @@ inline constexpr int kUsage = 2;
 inline constexpr int kData = 3;
 inline constexpr int kInterrupted = 130;
 
-// Fails unless bench ends with `code` and one line on standard error that holds every one of `parts`; standard output
-// stays empty.
+// Fails unless bench ends with `code` and one line on standard error that holds every one of `parts`;
+// standard output stays empty.
 inline void expect_refusal(const std::vector<std::string>& words, int code,
                            const std::vector<std::string>& parts) {
   const ProcessResult result = run_bench(words);

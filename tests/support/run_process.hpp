@@ -33,8 +33,8 @@ struct ProcessResult {
 
 class Process {
  public:
-  // Starts words[0] with standard input empty, standard output and error captured, and these variables ("NAME=VALUE") in its
-  // environment besides.
+  // Starts words[0] with standard input empty, standard output and error captured, and these variables
+  // ("NAME=VALUE") in its environment besides.
   explicit Process(const std::vector<std::string>& words, const std::vector<std::string>& environment = {});
   ~Process();  // kills what still runs
   Process(const Process&) = delete;
@@ -50,7 +50,8 @@ class Process {
 
 // The bench of this build with these arguments.
 ProcessResult run_bench(const std::vector<std::string>& arguments, double timeout_s = 120);
-// The same through a shell: "BENCH ARGUMENTS SUFFIX", e.g. with a suffix ">&-". Arguments must not hold quotes.
+// The same through a shell: "BENCH ARGUMENTS SUFFIX", e.g. with a suffix ">&-". Arguments must not hold
+// quotes.
 ProcessResult run_bench_in_shell(const std::vector<std::string>& arguments, const std::string& suffix,
                                  double timeout_s = 120);
 std::vector<std::string> bench_words(const std::vector<std::string>& arguments);

@@ -5,8 +5,8 @@
 
 namespace odobench::testing {
 
-// Six sections; figures with lines of repetitions and a choice of method, bands, box plots, heat map, error bars, histogram,
-// views side by side.
+// Six sections; figures with lines of repetitions and a choice of method, bands, box plots, heat map, error
+// bars, histogram, views side by side.
 Document sample_document();
 
 // A table with what is hard to show: non-finite numbers, differences, marks, empty cells, markup in names.

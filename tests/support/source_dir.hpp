@@ -1,5 +1,5 @@
-// Where the checkout lies. One function, so that no other file depends on that folder: a compiler cache then serves every
-// checkout.
+// Where the checkout lies. One function, so that no other file depends on that folder: a compiler cache then
+// serves every checkout.
 #pragma once
 
 #include <filesystem>

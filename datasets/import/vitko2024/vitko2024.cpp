@@ -62,8 +62,8 @@ Sums read_sums(const fs::path& folder) {
   return sums;
 }
 
-// How many pairs abs_1, odom_1, ... there are. A folder without any is taken for the published one, so that the first
-// missing file is named.
+// How many pairs abs_1, odom_1, ... there are. A folder without any is taken for the published one, so that
+// the first missing file is named.
 int count_pairs(const fs::path& folder, const Sums& sums) {
   int last = 0;
   const auto consider = [&](const std::string& name) {

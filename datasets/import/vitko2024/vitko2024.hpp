@@ -15,8 +15,9 @@ using ImportProgress = std::function<void(int done, int total)>;
 
 // folder holds the 60 files, or a folder dataset/ that does (a clone). Sums are checked where it has a
 // SHA256SUMS.
-//   - Pairs are numbered from 1 without a gap. Thirty are the published drives, six trajectories five times each; any other
-//     number becomes that many repetitions of one trajectory "drive". A folder whose SHA256SUMS lists more is refused.
+//   - Pairs are numbered from 1 without a gap. Thirty are the published drives, six trajectories five times
+//     each; any other number becomes that many repetitions of one trajectory "drive". A folder whose
+//     SHA256SUMS lists more is refused.
 //   - Columns are found by the names in the header line, wheels by the names in the lists (FL, BL, BR, FR =
 //   1, 2, 3, 4).
 //   - time (local wall time, "2024/05/03/12:34:34.823195") becomes integer microseconds; a stamp not later
@@ -32,8 +33,8 @@ using ImportProgress = std::function<void(int done, int total)>;
 // or time, a quaternion whose norm is not 1 within 10 %, a clock that goes back by more than 10 ms, fewer
 // than 31 motion-capture or 2 wheel rows, and wheel rows that begin or end more than 1 s inside the motion
 // capture's time.
-// drop_lost: captured samples whose tracking was lost (a quaternion whose norm is not 1 within 10 %, not-a-number) are
-// left out and counted in Dataset::notes.
+// drop_lost: captured samples whose tracking was lost (a quaternion whose norm is not 1 within 10 %,
+// not-a-number) are left out and counted in Dataset::notes.
 Dataset import_vitko2024(const std::filesystem::path& folder, const ImportProgress& progress = {},
                          int threads = 0, bool drop_lost = false);
 

@@ -36,8 +36,8 @@ struct WheelLog {
 };
 
 // text: the whole file; file: its name in messages.
-// drop_lost: samples whose tracking was lost (an orientation that is no rotation, or not-a-number) are left out and counted
-// instead of refused.
+// drop_lost: samples whose tracking was lost (an orientation that is no rotation, or not-a-number) are left
+// out and counted instead of refused.
 CaptureLog parse_capture(std::string_view text, const std::string& file, bool drop_lost = false);
 WheelLog parse_wheels(std::string_view text, const std::string& file);
 

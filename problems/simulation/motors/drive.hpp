@@ -1,5 +1,5 @@
-// Drives of the four-wheel robot: voltages and steering over time, the resulting motion, and the three experiments of
-// T. Stirblys' thesis (section 3.2).
+// Drives of the four-wheel robot: voltages and steering over time, the resulting motion, and the three
+// experiments of T. Stirblys' thesis (section 3.2).
 #pragma once
 
 #include <functional>
@@ -24,9 +24,9 @@ struct DriveSetup {
   IntegrationOptions integration;
   std::vector<Segment> segments;
 
-  // Throws std::invalid_argument naming what is wrong: parameters, options, no segments, times that do not increase,
-  // steering beyond a quarter turn, values that are not finite or beyond any robot (a day, 1000 V), motors whose current
-  // settles so fast that DormandPrince would take more than kMostSteps steps.
+  // Throws std::invalid_argument naming what is wrong: parameters, options, no segments, times that do not
+  // increase, steering beyond a quarter turn, values that are not finite or beyond any robot (a day, 1000 V),
+  // motors whose current settles so fast that DormandPrince would take more than kMostSteps steps.
   void validate() const;
 };
 
@@ -43,12 +43,12 @@ struct Sample {
 // Samples of one drive at most: with their texts 1.2 kB each.
 inline constexpr std::int64_t kMostSamples = 2'000'000;
 
-// Throws std::invalid_argument, which names the field, for step_s <= 0 and for a drive of more than kMostSamples samples or,
-// with fixed steps, kMostSteps steps. The setup must be valid.
+// Throws std::invalid_argument, which names the field, for step_s <= 0 and for a drive of more than
+// kMostSamples samples or, with fixed steps, kMostSteps steps. The setup must be valid.
 void check_size(const DriveSetup& setup, double step_s);
 
-// From rest at the origin. Samples at 0, step_s, 2 step_s, ... up to the end of the last segment (which has a sample
-// when it is a multiple within 1e-9 s). Throws std::invalid_argument on a bad setup or size,
+// From rest at the origin. Samples at 0, step_s, 2 step_s, ... up to the end of the last segment (which has a
+// sample when it is a multiple within 1e-9 s). Throws std::invalid_argument on a bad setup or size,
 // std::runtime_error when the integration fails.
 std::vector<Sample> simulate_drive(const DriveSetup& setup, double step_s);
 

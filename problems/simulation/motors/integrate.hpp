@@ -22,8 +22,8 @@ enum class Method {
 };
 
 struct IntegrationOptions {
-  // The current's time constant of 2.6 ms needs short steps after every jump of a voltage, and none later: with fixed
-  // steps of 1 ms the first samples are off by 2e-4 A.
+  // The current's time constant of 2.6 ms needs short steps after every jump of a voltage, and none later:
+  // with fixed steps of 1 ms the first samples are off by 2e-4 A.
   Method method = Method::DormandPrince;
   double step_s = 1e-3;  // of RungeKutta4 (made to divide each piece evenly); first step of DormandPrince
   double relative_tolerance = 1e-10;  // of DormandPrince, per step
@@ -44,8 +44,8 @@ struct IntegrationOptions {
   }
 };
 
-// Steps that one simulation may take; what needs more would run for hours. Measured: a microsecond each with fixed steps,
-// two with step control.
+// Steps that one simulation may take; what needs more would run for hours. Measured: a microsecond each with
+// fixed steps, two with step control.
 inline constexpr std::int64_t kMostSteps = 100'000'000;
 
 // Counts steps over the pieces of a simulation.
@@ -64,9 +64,9 @@ class StepCount {
   std::int64_t count_ = 0;
 };
 
-// Moves `state` (std::array of doubles) from time `from` to `to` > from under system(state, rates, time), whose right
-// side must be smooth in between: breakpoints belong to the caller. Throws std::runtime_error when the state does not
-// stay finite, no step is small enough, or there are too many.
+// Moves `state` (std::array of doubles) from time `from` to `to` > from under system(state, rates, time),
+// whose right side must be smooth in between: breakpoints belong to the caller. Throws std::runtime_error
+// when the state does not stay finite, no step is small enough, or there are too many.
 template <class State, class System>
 void advance(State& state, const System& system, double from, double to, const IntegrationOptions& options,
              StepCount& count) {

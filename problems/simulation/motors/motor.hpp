@@ -1,8 +1,10 @@
-// Direct-current motor of one wheel, T. Stirblys, master's thesis, Kaunas University of Technology, 2015, (2.3)-(2.4):
+// Direct-current motor of one wheel, T. Stirblys, master's thesis, Kaunas University of Technology, 2015,
+// (2.3)-(2.4):
 //     di/dt = (u - R i - cphi w) / La                                                       (2.3)
-//     dw/dt = (cphi i - kdc w - load) / Iw                                                  (2.4), there without load
-// with the voltage u [V], current i [A], wheel speed w [rad/s] and load torque [N m]: what the ground takes from the
-// wheel. The thesis has none, so that its ground forces are free energy.
+//     dw/dt = (cphi i - kdc w - load) / Iw                                                  (2.4), there
+//     without load
+// with the voltage u [V], current i [A], wheel speed w [rad/s] and load torque [N m]: what the ground takes
+// from the wheel. The thesis has none, so that its ground forces are free energy.
 #pragma once
 
 namespace odobench::dynamics {

@@ -1,13 +1,17 @@
-// Four-wheel robot with per-wheel motors, T. Stirblys, master's thesis, Kaunas University of Technology, 2015,
-// (2.5)-(2.19). World frame: x, y, heading theta counter-clockwise; body frame: x forward, y left. The signs of (2.19)
-// put the wheels at 1 (-a, +b), 2 (+a, +b), 3 (+a, -b), 4 (-a, -b): rear-left, front-left, front-right, rear-right.
+// Four-wheel robot with per-wheel motors, T. Stirblys, master's thesis, Kaunas University of Technology,
+// 2015, (2.5)-(2.19). World frame: x, y, heading theta counter-clockwise; body frame: x forward, y left. The
+// signs of (2.19) put the wheels at 1 (-a, +b), 2 (+a, +b), 3 (+a, -b), 4 (-a, -b): rear-left, front-left,
+// front-right, rear-right.
 //
 // With steering angles xi_i, wheel directions e_i = (cos xi_i, sin xi_i), positions p_i, R = R(theta):
-//   as published   F_i = k r w_i e_i,   m v' = R sum F_i - ktr v,   Izz theta'' = T - krot theta'     (2.17)-(2.19)
+//   as published   F_i = k r w_i e_i,   m v' = R sum F_i - ktr v,   Izz theta'' = T - krot theta'
+//   (2.17)-(2.19)
 //                  T = sum x_i F_iy - y_i F_ix, in the thesis with k w_i for F_i: without r
-//   wheel contact  F_i = k (r w_i - v_i.e_i) e_i - klat (v_i.n_i) n_i with the velocity v_i of the wheel's centre and
-//                  n_i = (-sin xi_i, cos xi_i); no ktr, krot. For klat = k it is the published form with ktr = 4 k,
-//                  krot = 4 k (a^2 + b^2): the friction of the thesis is that of a wheel that slips as easily sideways.
+//   wheel contact  F_i = k (r w_i - v_i.e_i) e_i - klat (v_i.n_i) n_i with the velocity v_i of the wheel's
+//   centre and
+//                  n_i = (-sin xi_i, cos xi_i); no ktr, krot. For klat = k it is the published form with ktr
+//                  = 4 k, krot = 4 k (a^2 + b^2): the friction of the thesis is that of a wheel that slips as
+//                  easily sideways.
 // The load torque of a wheel is r times the force along its direction.
 #pragma once
 
@@ -47,9 +51,9 @@ struct ModelOptions {
   void validate() const;
 };
 
-// "hint": k and the voltage step of the filter run are such that its largest changes of acceleration, 0.087323643 m/s2
-// and 0.021388556 rad/s2 per 0.1 s, are the constants that the thesis prints. "grip": wheels that hardly slip.
-// Throws std::invalid_argument on another name.
+// "hint": k and the voltage step of the filter run are such that its largest changes of acceleration,
+// 0.087323643 m/s2 and 0.021388556 rad/s2 per 0.1 s, are the constants that the thesis prints. "grip": wheels
+// that hardly slip. Throws std::invalid_argument on another name.
 RobotParameters robot_set(const std::string& name);
 std::vector<std::string> robot_set_names();
 inline constexpr double kHintVoltageStep = 0.799118732834;  // V, on wheels 3 and 4
@@ -67,7 +71,8 @@ struct ParameterDescription {
 };
 const std::vector<ParameterDescription>& parameter_descriptions();
 
-// Throws std::invalid_argument "mass is -5 kg, expected a positive number" or "..., expected at most 1e+06 kg".
+// Throws std::invalid_argument "mass is -5 kg, expected a positive number" or "..., expected at most 1e+06
+// kg".
 void validate(const RobotParameters& parameters);
 
 // Of the robot, with the integrals that its power balances need [J] and the wheels' turns.
@@ -101,14 +106,16 @@ State rates(const RobotParameters& parameters, const ModelOptions& options, cons
             const State& state);
 
 // What is left of the two balances, J; zero but for the integration error.
-//   body:  drive - friction - (m |v|^2 + Izz omega^2) / 2        motor: electrical - ohmic - bearing - load - stored
+//   body:  drive - friction - (m |v|^2 + Izz omega^2) / 2        motor: electrical - ohmic - bearing - load -
+//          stored
 struct Balance {
   double body = 0, motor = 0;
 };
 Balance balance(const RobotParameters& parameters, const State& state);
 
-// Where the published model (with or without r in the torque) settles under constant speeds and steering: rotation
-// T / krot, speed |f| / sqrt(ktr^2 + m^2 omega^2), sideslip -atan(m omega / ktr) against the force f.
+// Where the published model (with or without r in the torque) settles under constant speeds and steering:
+// rotation T / krot, speed |f| / sqrt(ktr^2 + m^2 omega^2), sideslip -atan(m omega / ktr) against the force
+// f.
 struct CircularMotion {
   double omega = 0, speed = 0, sideslip = 0;
 };

@@ -1,5 +1,5 @@
-// What the sensors of the four-wheel robot tell during a drive, and the truth in the frame of the sensor filter of
-// T. Stirblys' thesis (section 2.2).
+// What the sensors of the four-wheel robot tell during a drive, and the truth in the frame of the sensor
+// filter of T. Stirblys' thesis (section 2.2).
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct SensorRow {
   PerWheel steering{};      // rad
 };
 
-// The same without noise in the filter frame, which is turned against the body by alpha = atan(b / a): a body vector
-// (u, v) is (u cos alpha - v sin alpha, u sin alpha + v cos alpha) there (2.20)-(2.23).
+// The same without noise in the filter frame, which is turned against the body by alpha = atan(b / a): a body
+// vector (u, v) is (u cos alpha - v sin alpha, u sin alpha + v cos alpha) there (2.20)-(2.23).
 struct TruthRow {
   double sx = 0, sy = 0;                                 // displacement of the centre in the interval, m
   double dtheta_deg = 0;                                 // counter-clockwise
@@ -48,13 +48,13 @@ struct SensorRun {
 };
 
 // The first row holds noise and steering only: nothing has moved before it. `normal` gives standard
-// normal numbers; it is called seven times a row, in the order of the columns, zero variances included. Displacements
-// within an interval are taken in the body frame at its middle heading.
+// normal numbers; it is called seven times a row, in the order of the columns, zero variances included.
+// Displacements within an interval are taken in the body frame at its middle heading.
 SensorRun sense(const RobotParameters& robot, const std::vector<Sample>& samples, AccelerationFrame frame,
                 const SensorNoise& noise, const std::function<double()>& normal);
 
-// time_s,enc1_m..enc4_m,ax_m_s2,ay_m_s2,yaw_step_deg[,psi1_rad..psi4_rad]; shortest numbers that read back as the
-// same bits, lines end in \n. The steering columns come when a wheel ever is steered.
+// time_s,enc1_m..enc4_m,ax_m_s2,ay_m_s2,yaw_step_deg[,psi1_rad..psi4_rad]; shortest numbers that read back as
+// the same bits, lines end in \n. The steering columns come when a wheel ever is steered.
 std::string sensor_csv(const std::vector<SensorRow>& rows);
 // sx,sy,dtheta_deg,ax,ay,enc1x,enc1y,...,enc4y
 std::string truth_csv(const std::vector<TruthRow>& rows);

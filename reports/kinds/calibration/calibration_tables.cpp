@@ -35,7 +35,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     Table solvers = solver_table(comparison);
     append_parameters(tables, comparison, solvers, notes);
     append(tables, totals_table(comparison));
-    tables.push_back(std::move(solvers));
+    if (has_costs(comparison)) tables.push_back(std::move(solvers));
     append(tables, repeats_table(comparison));
   }
   for (Table& table : summary_tables(records)) tables.push_back(std::move(table));

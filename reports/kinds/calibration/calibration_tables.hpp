@@ -18,10 +18,13 @@
 namespace odobench {
 
 // Everything, in this order, tables without content left out:
-//   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in brackets
-//   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows first
+//   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in
+//                      brackets
+//   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows
+//                      first
 //   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %
-//   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active bounds
+//   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active
+//                      bounds
 //   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best
 // and at the end, over all problems, those of reports/kinds/calibration/summary_tables.hpp.
 // With several problems or data sets, ids begin with "PROBLEM.DATASET." and titles end with the names.

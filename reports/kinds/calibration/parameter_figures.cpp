@@ -196,48 +196,38 @@ std::optional<Table> weak_directions(const RunRecord& record) {
   return table;
 }
 
-void add_identifiability(const Comparison& comparison, const std::string& prefix, Section& section,
-                         Document& document) {
-  const RunRecord* record = best_described(comparison);
-  if (record == nullptr) return;
-  const std::vector<const ParameterValue*> parameters = free_parameters(*record);
-  const std::size_t n = parameters.size();
-  if (std::optional<Table> table = weak_directions(*record)) {
-    table->id = prefix + table->id;
-    table->title += comparison.title_suffix;
-    section.blocks.push_back(std::move(*table));
-  }
-  if (const std::vector<double>* values = series_of(*record, "singular_values", n)) {
-    std::string csv = "rank,value\n";
-    for (std::size_t k = 0; k < n; ++k) csv += fmt::format("{},{:.8g}\n", k + 1, (*values)[k]);
-    const std::string id = prefix + "singular_values";
-    document.datasets[id] = csv;
-    const std::string caption =
-        "Singular values of the Jacobian in relative parameters: a gap separates what "
-        "the data determine from what they do not.";
-    const json encoding{
-        {"x",
-         {{"field", "rank"}, {"type", "ordinal"}, {"title", "direction"}, {"axis", {{"labelAngle", 0}}}}},
-        {"y", vega::logarithmic("value", "singular value")}};
-    section.blocks.push_back(
-        Figure{id, "Singular values" + comparison.title_suffix, caption,
-               vega::specification(caption, vega::csv_data(id, {"rank", "value"}), {},
-                                   {{"width", kFigureWidth},
-                                    {"height", 240},
-                                    {"mark", {{"type", "line"}, {"point", true}, {"tooltip", true}}},
-                                    {"encoding", encoding}})});
-  }
-  const std::vector<double>* correlation = series_of(*record, "correlation", n * n);
-  if (correlation == nullptr) return;
+namespace {
+
+void add_singular_values(const std::vector<double>& values, const std::string& id, const std::string& suffix,
+                         Section& section, Document& document) {
+  std::string csv = "rank,value\n";
+  for (std::size_t k = 0; k < values.size(); ++k) csv += fmt::format("{},{:.8g}\n", k + 1, values[k]);
+  document.datasets[id] = csv;
+  const std::string caption =
+      "Singular values of the Jacobian in relative parameters: a gap separates what "
+      "the data determine from what they do not.";
+  const json encoding{
+      {"x", {{"field", "rank"}, {"type", "ordinal"}, {"title", "direction"}, {"axis", {{"labelAngle", 0}}}}},
+      {"y", vega::logarithmic("value", "singular value")}};
+  section.blocks.push_back(
+      Figure{id, "Singular values" + suffix, caption,
+             vega::specification(caption, vega::csv_data(id, {"rank", "value"}), {},
+                                 {{"width", kFigureWidth},
+                                  {"height", 240},
+                                  {"mark", {{"type", "line"}, {"point", true}, {"tooltip", true}}},
+                                  {"encoding", encoding}})});
+}
+
+// `correlation`: a row for each of `names` after the other.
+void add_correlation(const std::vector<double>& correlation, const std::vector<std::string>& names,
+                     const std::string& id, const std::string& suffix, Section& section, Document& document) {
+  const std::size_t n = names.size();
   std::string csv = "row,column,correlation\n";
-  std::vector<std::string> names;
-  for (const ParameterValue* p : parameters) names.push_back(p->name);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      if (std::isfinite((*correlation)[i * n + j]))
-        csv += fmt::format("{},{},{:.4f}\n", csv_field(names[i]), csv_field(names[j]),
-                           (*correlation)[i * n + j]);
-  const std::string id = prefix + "correlation";
+      if (std::isfinite(correlation[i * n + j]))
+        csv +=
+            fmt::format("{},{},{:.4f}\n", csv_field(names[i]), csv_field(names[j]), correlation[i * n + j]);
   document.datasets[id] = csv;
   const std::string caption =
       "Correlation of the estimated parameters: near 1 or -1 the data see only a combination of the two.";
@@ -249,7 +239,7 @@ void add_identifiability(const Comparison& comparison, const std::string& prefix
                 {"axis", {{"labelAngle", 0}}}};
   };
   section.blocks.push_back(
-      Figure{id, "Correlation of the parameters" + comparison.title_suffix, caption,
+      Figure{id, "Correlation of the parameters" + suffix, caption,
              vega::specification(caption, vega::csv_data(id, {"correlation"}), {},
                                  {{"width", kFigureWidth},
                                   {"height", 400},
@@ -262,6 +252,26 @@ void add_identifiability(const Comparison& comparison, const std::string& prefix
                                       {"type", "quantitative"},
                                       {"title", "correlation"},
                                       {"scale", {{"domain", {-1, 1}}, {"domainMid", 0}}}}}}}})});
+}
+
+}  // namespace
+
+void add_identifiability(const Comparison& comparison, const std::string& prefix, Section& section,
+                         Document& document) {
+  const RunRecord* record = best_described(comparison);
+  if (record == nullptr) return;
+  std::vector<std::string> names;
+  for (const ParameterValue* p : free_parameters(*record)) names.push_back(p->name);
+  const std::size_t n = names.size();
+  if (std::optional<Table> table = weak_directions(*record)) {
+    table->id = prefix + table->id;
+    table->title += comparison.title_suffix;
+    section.blocks.push_back(std::move(*table));
+  }
+  if (const std::vector<double>* values = series_of(*record, "singular_values", n))
+    add_singular_values(*values, prefix + "singular_values", comparison.title_suffix, section, document);
+  if (const std::vector<double>* correlation = series_of(*record, "correlation", n * n))
+    add_correlation(*correlation, names, prefix + "correlation", comparison.title_suffix, section, document);
 }
 
 }  // namespace odobench

@@ -10,9 +10,10 @@
 
 namespace odobench {
 
-// Over the repeats of each label: best J so far against evaluations and against time, as median, quartiles and extremes
-// on a logarithmic grid; J itself or J above the lowest J of the comparison. Between its trace points a run keeps its best J.
-// Appends convergence.evaluations and convergence.seconds; nothing when no run has a trace.
+// Over the repeats of each label: best J so far against evaluations and against time, as median, quartiles
+// and extremes on a logarithmic grid; J itself or J above the lowest J of the comparison. Between its trace
+// points a run keeps its best J. Appends convergence.evaluations and convergence.seconds; nothing when no run
+// has a trace.
 void add_convergence_figures(const Comparison& comparison, const std::string& prefix, Section& section,
                              Document& document);
 
@@ -20,13 +21,14 @@ void add_convergence_figures(const Comparison& comparison, const std::string& pr
 void add_repeat_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                        Document& document);
 
-// Parameters as deviation from nominal in % with the box, and bars of +-1.96 deviations of linear least-squares theory as they
-// would be if residuals were independent, where the record has them (cut at the plot's edge). Nothing without parameters.
+// Parameters as deviation from nominal in % with the box, and bars of +-1.96 deviations of linear
+// least-squares theory as they would be if residuals were independent, where the record has them (cut at the
+// plot's edge). Nothing without parameters.
 void add_parameter_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                           Document& document);
 
-// What the data determine at the best result: singular values, weak directions in words, correlations. Nothing without the
-// series of a record.
+// What the data determine at the best result: singular values, weak directions in words, correlations.
+// Nothing without the series of a record.
 void add_identifiability(const Comparison& comparison, const std::string& prefix, Section& section,
                          Document& document);
 

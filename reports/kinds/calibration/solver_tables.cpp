@@ -50,7 +50,8 @@ struct GapReference {
                ? fmt::format("Gap to optimum: (J - J*) / |J*| with the lowest known J* = {:.10g}.", *known)
                : std::string("Gap to optimum: J itself, since the lowest known J is 0.");
   }
-  // Relative, so that it does not depend on the scale of J; without meaning when the best J of the records is zero.
+  // Relative, so that it does not depend on the scale of J; without meaning when the best J of the records is
+  // zero.
   Cell cell(const ComparisonRow& row) const {
     const std::optional<double>& cost = row.shown->cost;
     const double from = known.value_or(best.value_or(0));
@@ -135,7 +136,8 @@ void append_spread_columns(std::vector<Column>& columns, const std::string& id, 
   columns.push_back(number_column(id + "_iqr", "IQR", unit, id));
 }
 
-// k of n runs; noise: the binomial standard deviation at (k + 1) / (n + 2), which is not zero for none or all.
+// k of n runs; noise: the binomial standard deviation at (k + 1) / (n + 2), which is not zero for none or
+// all.
 Cell share_cell(double k, std::size_t runs) {
   const auto n = static_cast<double>(runs);
   const double p = (k + 1) / (n + 2);
@@ -160,6 +162,11 @@ std::vector<Cell> repeats_row(const ComparisonRow& row, const std::optional<doub
 }
 
 }  // namespace
+
+bool has_costs(const Comparison& comparison) {
+  return std::any_of(comparison.rows.begin(), comparison.rows.end(),
+                     [](const ComparisonRow& row) { return row.kind != "evaluation" || row.shown->cost; });
+}
 
 Table solver_table(const Comparison& comparison) {
   Table table;

@@ -88,7 +88,8 @@ std::array<double, 3> ranges(const std::vector<Curve>& curves) {
   return result;
 }
 
-// Rows t,d,s,a,b,c: time, drive, series, the three values; thinned as finely as stays within `rows`, to 1 / `parts` of the range.
+// Rows t,d,s,a,b,c: time, drive, series, the three values; thinned as finely as stays within `rows`, to 1 /
+// `parts` of the range.
 std::string path_rows(const std::vector<Curve>& curves, std::size_t rows, double& parts) {
   const std::array<double, 3> range = ranges(curves);
   std::vector<std::vector<std::size_t>> kept(curves.size());
@@ -133,8 +134,9 @@ Frame frame_of(const std::vector<Curve>& paths) {
   return frame;
 }
 
-// Rows c,t,d,s,e: variable, time, drive, series, error. The noise of the reference does not let tolerances save much: a curve
-// that would need more than two rows per stretch is shown by the extremes of the stretches.
+// Rows c,t,d,s,e: variable, time, drive, series, error. The noise of the reference does not let tolerances
+// save much: a curve that would need more than two rows per stretch is shown by the extremes of the
+// stretches.
 std::string error_rows(const std::vector<Curve>& curves, std::size_t stretches) {
   const std::array<double, 3> range = ranges(curves);
   std::string csv = "c,t,d,s,e\n";

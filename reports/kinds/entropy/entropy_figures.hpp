@@ -9,8 +9,8 @@
 
 namespace odobench {
 
-// Of one record of `bench filter`: signals before, after and truth as bands over the run, their first rows as lines, and the
-// histogram of the gap to the optimum where it was measured.
+// Of one record of `bench filter`: signals before, after and truth as bands over the run, their first rows as
+// lines, and the histogram of the gap to the optimum where it was measured.
 void add_filter_figures(const RunRecord& record, const std::string& prefix, Section& section,
                         Document& document);
 

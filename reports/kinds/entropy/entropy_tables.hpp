@@ -1,12 +1,13 @@
-// Tables of runs of the relative-entropy filter (`bench filter`). Such a record has problem kFilterProblem, as cost the mean
-// of -H over the windows, and these statistics:
+// Tables of runs of the relative-entropy filter (`bench filter`). Such a record has problem kFilterProblem,
+// as cost the mean of -H over the windows, and these statistics:
 //   rows, windows, iterations_mean, iterations_max, evaluations_mean, windows_per_second
 //   hamiltonian_mean, hamiltonian_min, hamiltonian_max
 //   gain_mean, gain_max            H - H without increments, the control
-//   gap_exact_mean, gap_exact_max, at_optimum     H_exact - H and the share of windows where it is 0 (see below)
+//   gap_exact_mean, gap_exact_max, at_optimum     H_exact - H and the share of windows where it is 0 (see
+//   below)
 //   gap_relaxed_mean, gap_relaxed_max             H_relaxed - H
-//   noise.CHANNEL.MEASURE.STAGE    CHANNEL encoder_component | encoder | ax | ay | theta, MEASURE rms | ratio | max,
-//                                  STAGE before | after | zero (after the filter without increments)
+//   noise.CHANNEL.MEASURE.STAGE    CHANNEL encoder_component | encoder | ax | ay | theta, MEASURE rms | ratio
+//                                  | max, STAGE before | after | zero (after the filter without increments)
 //   track.end.STAGE, track.max.STAGE   m, distance of the dead-reckoned from the true position
 // and these series (see also kSignals and gap_bin_name):
 //   signal.width                          rows per bucket
@@ -45,7 +46,8 @@ inline constexpr std::array<NoiseChannel, 4> kSignals{
     {{"encoder", "wheels", "m"}, {"ax", "ax", "m/s^2"}, {"ay", "ay", "m/s^2"}, {"theta", "rotation", "deg"}}};
 inline constexpr std::array<const char*, 3> kSignalStages{"before", "after", "truth"};
 
-// A window counts as solved to the optimum when H_exact - H <= this * |H_exact|: what is above it is another t, not rounding.
+// A window counts as solved to the optimum when H_exact - H <= this * |H_exact|: what is above it is another
+// t, not rounding.
 inline constexpr double kSameOptimum = 1e-9;
 
 // Bin 0: at the optimum. Bin k: from kGapLowest * 10^((k-1)/2) on, half a decade each.

@@ -1,5 +1,5 @@
-// What `bench fuse` found -> tables in the layout of J. Vitko's thesis (tables 43-67), and what it lacks: root mean
-// square errors, consistency (NEES, NIS) with bands, and a verdict in words.
+// What `bench fuse` found -> tables in the layout of J. Vitko's thesis (tables 43-67), and what it lacks:
+// root mean square errors, consistency (NEES, NIS) with bands, and a verdict in words.
 #pragma once
 
 #include <string>
@@ -23,7 +23,8 @@ struct FusionRow {
   std::string label;      // "published:ga+ekf"
   bool filtered = false;  // odometry alone has no covariance, hence nothing below the errors
   double rmse_position = 0, rmse_heading = 0;
-  // Mean over the recordings at each instant, mean of that over the instants; part of the instants inside the band.
+  // Mean over the recordings at each instant, mean of that over the instants; part of the instants inside the
+  // band.
   double mean_nees = 0, inside = 0;
   double lower = 0, upper = 0;  // band of the mean over the recordings
   std::vector<double> nees;     // that mean at each instant
