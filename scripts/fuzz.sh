@@ -41,7 +41,7 @@ for format in "$@"; do
   log=$build/findings/$format.log
   # In a folder of its own, since a configuration may name any file.
   if (cd "$scratch" && export ODOBENCH_FUZZ=$format TIMEFORMAT='processor time: %U s' &&
-      time "$target" "$corpus" "${kept[@]}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 \
+      time "$target" "$corpus" "${kept[@]}" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=4096 \
         -artifact_prefix="$build/findings/$format-" -print_final_stats=1) >"$log" 2>&1; then
     printf '%-14s %9s executions in %s of processor time, nothing found\n' "$format" \
       "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" "$(sed -n 's/^processor time: //p' "$log")"

@@ -236,7 +236,7 @@ TEST(CliVerify, LeavesRecordsThatReportAndCompareRead) {
   const auto number = [](const nlohmann::json& cell) {
     return (cell.is_object() ? cell.at("value") : cell).get<double>();
   };
-  // The means over the repeats are those over all drives; both orders of summation are right to the last digits.
+  // Means of means over the repeats are those over all drives, up to the order of summation.
   const nlohmann::json sums = table(tables, "verify.totals"), reported = table(report, "totals");
   ASSERT_EQ(reported.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i)
