@@ -12,6 +12,7 @@
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/run_tracks.hpp"
+#include "bench/studies/work_size.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "reports/kinds/fusion/fusion_record.hpp"
 
@@ -92,6 +93,11 @@ ExitCode fuse_command(const FuseOptions& options) {
   if (!options.out.empty()) require_no_records(options.out, options.overwrite);
   const std::uint64_t seed = options.seed.value_or(sensors.seed);
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
+  const double measurements = require_measurements(sensors, recordings);
+  const auto runs = static_cast<double>(filters.size() * sets.size());
+  announce(fmt::format("--sensors={}: {:.2g} measurements, filtered {} times", options.sensors, measurements,
+                       runs),
+           measurements * runs * kSecondsPerMeasurement, false);
   const std::vector<std::vector<SensorStream>> streams =
       all_streams(sensors, recordings, seed, options.threads);
   const Table about = sensor_table(sensors, seed, loaded.dataset_name());

@@ -154,7 +154,7 @@ SensorsFile read_sensors(const std::filesystem::path& path) {
   return file;
 }
 
-void require_measurements(const SensorsFile& file, std::span<const Recording> recordings) {
+double require_measurements(const SensorsFile& file, std::span<const Recording> recordings) {
   double seconds = 0;
   for (const Recording& r : recordings)
     seconds += (static_cast<double>(r.time_us.back()) - static_cast<double>(r.time_us.front())) * 1e-6;
@@ -164,6 +164,7 @@ void require_measurements(const SensorsFile& file, std::span<const Recording> re
     throw DataError(fmt::format(
         "{}: at these rates the {:.6g} s of the recordings make {:.3g} measurements, expected at most {:.3g}",
         file.name, seconds, count, kMostMeasurements));
+  return count;
 }
 
 std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,

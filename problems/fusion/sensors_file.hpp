@@ -36,10 +36,12 @@ struct SensorsFile {
 // (docs/fusion.md).
 SensorsFile read_sensors(const std::filesystem::path& file);
 
-// Of all sensors and recordings together: 60 bytes each, and ten microseconds to make and to filter.
+// Of all sensors and recordings together: 60 bytes each, and half a microsecond (ekf) to two (ukf) to make
+// and to filter.
 inline constexpr double kMostMeasurements = 2e7;
-// Throws DataError when the rates over the recordings' durations give more.
-void require_measurements(const SensorsFile& file, std::span<const Recording> recordings);
+inline constexpr double kSecondsPerMeasurement = 1e-6;
+// How many the rates over the recordings' durations give. Throws DataError when there are more than these.
+double require_measurements(const SensorsFile& file, std::span<const Recording> recordings);
 
 // The streams of a recording; same seed, file and recording id: same bits.
 std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,
