@@ -41,8 +41,8 @@ TESTS = {
     "problems/calibration/structure.cpp": ["test_calibration"],
     "problems/entropy/profile_form.cpp": ["test_entropy_windows", "test_sliding_filter"],
     "reports/regression/baseline_check.cpp": ["test_baseline"],
-    "reports/statistics/mann_whitney.cpp": ["test_rank_test"],
-    "reports/statistics/statistics.cpp": ["test_reports", "test_run_comparison", "test_report_tables"],
+    "reports/statistics/mann_whitney.cpp": ["test_mann_whitney"],
+    "reports/statistics/statistics.cpp": ["test_reports", "test_changes", "test_report_tables"],
     "solvers/lattice/ternary_kernel_impl.hpp": ["test_entropy_windows", "test_sliding_filter"],
 }
 
