@@ -57,7 +57,9 @@ TEST(Cli, HelpAndVersionGoToStandardOutput) {
   EXPECT_THAT(run.out, HasSubstr("[50000]"));
   const ProcessResult version = run_bench({"--version"});
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_THAT(version.out, ::testing::MatchesRegex("bench [0-9.]+ \\(revision .+, .+, .+\\)\n"));
+  // A build without charts says so in a second line.
+  EXPECT_THAT(version.out, ::testing::MatchesRegex("bench [0-9.]+ \\(revision .+, .+, .+\\)\n"
+                                                   "(HTML reports without charts: .+\n)?"));
 }
 
 TEST(Cli, CalibratesTheDemoSetAndKeepsRecordsAndTables) {
