@@ -182,6 +182,20 @@ void require_and_announce(simulate::RecordingScenario s, const PlanOptions& o) {
   announce(size, false);
 }
 
+// The scatter of r simulations of a drive has a rank of r - 1 at most: along the rest nothing would be
+// uncertain.
+std::string too_few_replicas(const Selection& selection, std::size_t parameters, const PlanOptions& o) {
+  const auto drives = static_cast<std::size_t>(
+      std::count_if(selection.counts.begin(), selection.counts.end(), [](int count) { return count > 0; }));
+  const std::size_t rank = drives * static_cast<std::size_t>(o.replicas - 1);
+  if (drives == 0 || rank >= parameters) return "";
+  return fmt::format(
+      "--replicas={}: the noise of {} drive{} shows in {} of {} combinations, the others look exactly "
+      "determined; "
+      "give at least --replicas={}",
+      o.replicas, drives, drives == 1 ? "" : "s", rank, parameters, (parameters + drives - 1) / drives + 1);
+}
+
 // The relative standard deviations and directions of the plan; what is not determined has no statistic.
 RunRecord plan_record(const simulate::RecordingScenario& s, const PlanAnalysis& a,
                       const std::vector<ParameterInfo>& parameters, const PlanOptions& o,
@@ -226,6 +240,9 @@ ExitCode plan_command(const PlanOptions& o) {
   const std::vector<DriveInformation> drives = informations(scenario, selection, o, kernel);
   const PlanAnalysis analysis = analyse_drives(drives, selection.counts, parameters, o.wanted);
   RunRecord record = plan_record(scenario, analysis, parameters, o, kernel);
+  if (const std::string few = scenario.exact ? "" : too_few_replicas(selection, parameters.size(), o);
+      !few.empty())
+    record.notes.push_back(few);
   if (!o.candidates.empty()) put_proposals(drives, selection, parameters, o.wanted, record);
   const std::vector<Table> tables = planning_tables(record, !o.candidates.empty());
   if (!o.out.empty()) save_study(o.out, o.overwrite, {record}, tables);

@@ -207,6 +207,8 @@ TEST(CliPlan, LeavesARecordThatGivesTheTablesAgain) {
                                           "--replicas=4", "--candidates=all",    "--out=" + out};
   const ProcessResult planned = run_bench(words);
   ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("--replicas=4: the noise of 1 drive shows in 3 of 12 combinations"));
+  EXPECT_THAT(planned.out, HasSubstr("--replicas=13."));
   EXPECT_EQ(run_bench({"report", out}).out, planned.out);
   EXPECT_EQ(content(folder / "plan/tables.txt"), planned.out);
   EXPECT_EQ(run_bench({"report", out, "--out=" + out + "/page.html"}).exit_code, 0);

@@ -57,6 +57,9 @@ Table parameters_table(const RunRecord& record) {
       fmt::format("Standard deviation of a calibration by least squares, from simulated noise; determined: "
                   "at most {:g} %; {} of {}.",
                   100 * wanted, count, deviations.size()));
+  for (const std::string& note : record.notes)
+    if (note.rfind(kUndeterminedNote, 0) != 0 && note.rfind(kProposedNote, 0) != 0)
+      t.notes.push_back(note + ".");
   return t;
 }
 

@@ -9,7 +9,7 @@
 //   statistics  wanted               relative standard deviation asked for
 //               determined           how many parameters reach it
 //               deviation.NAME       as in the series, of those that are determined at all
-//   notes       "undetermined: COMBINATION", "proposed: DRIVE"
+//   notes       "undetermined: COMBINATION", "proposed: DRIVE", and remarks for the first table
 #pragma once
 
 #include <vector>
