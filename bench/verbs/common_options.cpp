@@ -66,12 +66,24 @@ void add_count(CLI::App& app, const std::string& name, int& value, int lowest, i
       ->type_name("N");
 }
 
-void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads) {
-  app.add_option_function<std::string>(
-         "--seed", [&seed](const std::string& text) { seed = seed_number("--seed", text); },
-         "of the noise [1]")
-      ->type_name("N");
+void add_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
+  add_value(app, "--seed", "N", help,
+            [&seed](const std::string& text) { seed = seed_number("--seed", text); });
+}
+
+void add_threads(CLI::App& app, int& threads) {
   add_count(app, "--threads", threads, 1, 1024, "threads; results do not depend on them [one per core]");
+}
+
+void add_run_folder(CLI::App& app, std::string& out, bool& overwrite) {
+  app.add_option("--out", out, "folder for runs.jsonl (a line per run, as it ends) and tables.*")
+      ->type_name("DIR");
+  app.add_flag("--overwrite", overwrite, "replace the runs.jsonl of an earlier call in --out");
+}
+
+void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads) {
+  add_seed(app, seed, "of the noise [1]");
+  add_threads(app, threads);
 }
 
 CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario) {

@@ -34,6 +34,10 @@ void add_study_folder(CLI::App& app, std::string& out, bool& overwrite);
 // A whole number between two limits.
 void add_count(CLI::App& app, const std::string& name, int& value, int lowest, int highest,
                const std::string& help);
+void add_seed(CLI::App& app, std::uint64_t& seed, const std::string& help);
+void add_threads(CLI::App& app, int& threads);
+// --out and --overwrite of verbs that write each run as it ends.
+void add_run_folder(CLI::App& app, std::string& out, bool& overwrite);
 // --seed and --threads of simulated drives.
 void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads);
 CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario);

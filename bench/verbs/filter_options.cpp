@@ -99,8 +99,7 @@ void add_filter_options(CLI::App& app, EntropyOptions& o) {
       ->type_name("DIR");
   add_constants(app, o);
   add_meanings(app, o);
-  add_value(app, "--seed", "N", "of a solver that draws random numbers [1]",
-            [&o](const std::string& text) { o.seed = seed_number("--seed", text); });
+  add_seed(app, o.seed, "of a solver that draws random numbers [1]");
   add_kernel(app, o.kernel, kSpeedOnly);
   add_budget(app, o.budget);
   app.add_flag("--overwrite", o.overwrite, "replace files that are there");

@@ -48,13 +48,7 @@ void add_options(CLI::App& app, FuseOptions& o) {
          "--seed", [&o](const std::string& text) { o.seed = seed_number("--seed", text); },
          "of the synthetic sensors [that of the file]")
       ->type_name("N");
-  app.add_option_function<std::string>(
-         "--threads",
-         [&o](const std::string& text) {
-           o.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
-         },
-         "threads; results do not depend on them [one per core]")
-      ->type_name("N");
+  add_threads(app, o.threads);
   add_kernel(app, o.kernel, kNamedOnly);
   app.add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
   app.add_flag("--overwrite", o.overwrite, "replace runs that the folder holds");

@@ -70,16 +70,10 @@ void add_options(CLI::App& app, RunOptions& options) {
   add_value(app, "--dimension", "N", "dimension of classic problems", [&options](const std::string& text) {
     options.dimension = static_cast<int>(whole_number("--dimension", text, 1, 1000));
   });
-  add_value(app, "--repeat", "N", "runs of every solver, each with a seed of its own [1]",
-            [&options](const std::string& text) {
-              options.repeat = static_cast<int>(whole_number("--repeat", text, 1, 100000));
-            });
-  add_value(app, "--seed", "N", "base of all seeds [1]",
-            [&options](const std::string& text) { options.seed = seed_number("--seed", text); });
-  add_value(app, "--threads", "N", "threads; results do not depend on them [one per core]",
-            [&options](const std::string& text) {
-              options.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
-            });
+  add_count(app, "--repeat", options.repeat, 1, 100000,
+            "runs of every solver, each with a seed of its own [1]");
+  add_seed(app, options.seed, "base of all seeds [1]");
+  add_threads(app, options.threads);
   add_kernel(app, options.kernel, kLastBits);
   add_budget(app, options.budget);
   add_value(app, "--start", "nominal|random",
@@ -96,9 +90,7 @@ void add_options(CLI::App& app, RunOptions& options) {
   app.add_option("--polish", options.polish,
                  "solver that goes on from the best point of each run, within its budget")
       ->type_name("SOLVER");
-  app.add_option("--out", options.out, "folder for runs.jsonl (a line per run, as it ends) and tables.*")
-      ->type_name("DIR");
-  app.add_flag("--overwrite", options.overwrite, "replace the runs.jsonl of an earlier call in --out");
+  add_run_folder(app, options.out, options.overwrite);
   app.add_option("--format", options.format, "of the tables on standard output [console]")
       ->type_name("console|md|csv|json|latex");
   app.add_option("--config", options.config, "options from a JSON or INI/TOML file; the command line wins")

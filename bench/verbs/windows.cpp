@@ -15,7 +15,6 @@
 #include "base/sha256.hpp"
 #include "base/stop.hpp"
 #include "base/text.hpp"
-#include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/progress.hpp"
@@ -64,21 +63,12 @@ void add_options(CLI::App& app, WindowsOptions& o) {
   app.add_option("--only", o.only, "ids or groups of windows [all]")
       ->type_name("LIST")
       ->allow_extra_args(false);
-  add_value(app, "--repeat", "N", "runs of every solver that draws random numbers [1]",
-            [&o](const std::string& text) {
-              o.repeat = static_cast<int>(whole_number("--repeat", text, 1, 100000));
-            });
-  add_value(app, "--seed", "N", "base of all seeds [1]",
-            [&o](const std::string& text) { o.seed = seed_number("--seed", text); });
-  add_value(app, "--threads", "N", "threads; results do not depend on them [one per core]",
-            [&o](const std::string& text) {
-              o.threads = static_cast<int>(whole_number("--threads", text, 1, 1024));
-            });
+  add_count(app, "--repeat", o.repeat, 1, 100000, "runs of every solver that draws random numbers [1]");
+  add_seed(app, o.seed, "base of all seeds [1]");
+  add_threads(app, o.threads);
   add_kernel(app, o.kernel, kNamedOnly);
   add_budget(app, o.budget);
-  app.add_option("--out", o.out, "folder for runs.jsonl (a line per run, as it ends) and tables.*")
-      ->type_name("DIR");
-  app.add_flag("--overwrite", o.overwrite, "replace the runs.jsonl of an earlier call in --out");
+  add_run_folder(app, o.out, o.overwrite);
   app.add_option("--format", o.format, "of the tables on standard output [console]")
       ->type_name("console|md|csv|json|latex");
   app.add_flag("--quiet", o.quiet, "no progress and no remarks on standard error, only warnings and errors");
