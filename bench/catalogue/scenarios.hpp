@@ -1,5 +1,5 @@
 // Scenarios by name or file, of either kind: drives of the robot with four steered wheels
-// (datasets/simulate), and drives of the four-wheel robot with motors (problems/dynamics).
+// (problems/simulation), and drives of the four-wheel robot with motors (problems/simulation/motors).
 #pragma once
 
 #include <filesystem>
