@@ -13,10 +13,7 @@ std::uint64_t derive_seed(std::uint64_t base, std::initializer_list<std::string_
     for (char c : part) mix(static_cast<unsigned char>(c));
     mix(0xff);  // no text contains it: {"ab","c"} and {"a","bc"} differ
   }
-  hash += 0x9e3779b97f4a7c15ull;
-  hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9ull;
-  hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebull;
-  return hash ^ (hash >> 31);
+  return mixed_seed(hash, 0);
 }
 
 }  // namespace odobench

@@ -89,14 +89,22 @@ std::optional<KnownAnswer> known_answer(const Problem& problem, const Result& re
   return known;
 }
 
-RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
+RunRecord empty_record(const std::string& problem, const std::string& dataset,
+                       const std::vector<ParameterInfo>& parameters, const RunContext& context,
+                       const std::string& time_utc) {
   RunRecord record;
-  record.problem = loaded.name();
-  record.box = box_check_sum(loaded.problem.parameters());
-  record.dataset = loaded.dataset_name();
-  record.dataset_sha256 = loaded.dataset_sha256;
+  record.problem = problem;
+  record.box = box_check_sum(parameters);
+  record.dataset = dataset;
   record.context = context;
   record.time_utc = time_utc;
+  return record;
+}
+
+RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, const std::string& time_utc) {
+  RunRecord record =
+      empty_record(loaded.name(), loaded.dataset_name(), loaded.problem.parameters(), context, time_utc);
+  record.dataset_sha256 = loaded.dataset_sha256;
   return record;
 }
 
@@ -175,16 +183,11 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
 RunRecord study_record(const std::string& problem, const std::string& dataset, const std::string& label,
                        const std::vector<ParameterInfo>& parameters, const Vector& values,
                        const RunContext& context) {
-  RunRecord record;
-  record.problem = problem;
-  record.dataset = dataset;
+  RunRecord record = empty_record(problem, dataset, parameters, context, utc_now());
   record.label = label;
   record.kind = "evaluation";
   record.termination = "evaluated";
-  record.box = box_check_sum(parameters);
   record.parameters = parameter_values(parameters, values);
-  record.context = context;
-  record.time_utc = utc_now();
   return record;
 }
 

@@ -256,8 +256,8 @@ std::vector<RunRecord> verification_records(const simulate::RecordingScenario& s
         return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
             .mean;
       };
-      record.statistics["arrival_position." + s.drives[t].name] = at(0);
-      record.statistics["arrival_heading." + s.drives[t].name] = at(1);
+      record.statistics[kArrivalPosition + s.drives[t].name] = at(0);
+      record.statistics[kArrivalHeading + s.drives[t].name] = at(1);
     }
     records.push_back(std::move(record));
   }

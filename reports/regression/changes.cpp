@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
 #include <utility>
+
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
@@ -53,17 +54,16 @@ bool noiseless(const ComparisonRow& before, const ComparisonRow& after, const Co
 
 void measure(Change& c) {
   if (has_nan(c.before.values) || has_nan(c.after.values)) {
-    c.old_median = c.new_median = c.change = c.relative = std::numeric_limits<double>::quiet_NaN();
+    c.old_median = c.new_median = c.change = c.relative = kNotANumber;
     return;
   }
   c.old_median = median_of(c.before.values);
   c.new_median = median_of(c.after.values);
   // Two failed runs are equal, although infinity - infinity is not zero.
   c.change = c.old_median == c.new_median ? 0 : c.new_median - c.old_median;
-  c.relative = c.change == 0 ? 0
-               : c.old_median == 0 || std::isinf(c.change)
-                   ? std::copysign(std::numeric_limits<double>::infinity(), c.change)
-                   : c.change / std::abs(c.old_median);
+  c.relative = c.change == 0                               ? 0
+               : c.old_median == 0 || std::isinf(c.change) ? std::copysign(kInfinity, c.change)
+                                                           : c.change / std::abs(c.old_median);
   const std::vector<double> before = as_costs(c.before), after = as_costs(c.after);
   c.a12 = probability_lower(before, after);
   c.shift = median_shift(c.before.values, c.after.values);

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/range.hpp"
+
 namespace odobench {
 namespace {
 
@@ -35,7 +37,7 @@ Ranked ranks_of(const std::vector<double>& before, const std::vector<double>& af
   std::vector<double> values = before;
   values.insert(values.end(), after.begin(), after.end());
   for (double& value : values)
-    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+    if (std::isnan(value)) value = kInfinity;
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 
+#include "base/range.hpp"
+
 namespace odobench {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Definition 7: position (N - 1) p between the order statistics.
 double quantile(const std::vector<double>& sorted, double p) {
@@ -60,10 +59,10 @@ double deviation_of(const std::vector<double>& values, double mean) {
 ErrorStatistics error_statistics_of(const std::vector<double>& repetitions) {
   if (repetitions.empty())
     throw std::invalid_argument("error statistics need at least one repetition, got 0");
-  if (any_nan(repetitions)) return {kNaN, kNaN, kNaN};
+  if (any_nan(repetitions)) return {kNotANumber, kNotANumber, kNotANumber};
   const double mean = mean_of(repetitions);
   return {*std::max_element(repetitions.begin(), repetitions.end()), mean,
-          repetitions.size() < 2 ? kNaN : deviation_of(repetitions, mean)};
+          repetitions.size() < 2 ? kNotANumber : deviation_of(repetitions, mean)};
 }
 
 std::vector<TrajectoryErrors> error_statistics(const std::vector<RecordingError>& errors) {
@@ -97,7 +96,8 @@ Totals error_totals(const std::vector<TrajectoryErrors>& errors) {
 
 Spread spread(std::vector<double> values) {
   if (values.empty()) throw std::invalid_argument("a spread needs at least one value, got 0");
-  if (any_nan(values)) return {values.size(), kNaN, kNaN, kNaN, kNaN, kNaN};
+  if (any_nan(values))
+    return {values.size(), kNotANumber, kNotANumber, kNotANumber, kNotANumber, kNotANumber};
   std::sort(values.begin(), values.end());
   return {values.size(),         values.front(),         quantile(values, 0.25),
           quantile(values, 0.5), quantile(values, 0.75), values.back()};

@@ -6,6 +6,7 @@
 
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
+#include "reports/records/series.hpp"
 
 namespace odobench {
 namespace {
@@ -21,12 +22,6 @@ std::vector<const ParameterValue*> free_parameters(const RunRecord& record) {
   for (const ParameterValue& p : record.parameters)
     if (p.lower < p.upper) list.push_back(&p);
   return list;
-}
-
-// The series of a record when its length is the one that n free parameters ask for.
-const std::vector<double>* series_of(const RunRecord& record, const char* name, std::size_t size) {
-  const auto found = record.series.find(name);
-  return found != record.series.end() && found->second.size() == size ? &found->second : nullptr;
 }
 
 // The run with the lowest J that says what its data determine.

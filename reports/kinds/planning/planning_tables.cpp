@@ -7,6 +7,8 @@
 #include <numeric>
 #include <string>
 
+#include "reports/records/series.hpp"
+
 namespace odobench {
 namespace {
 
@@ -14,11 +16,6 @@ constexpr std::size_t kShownComponents = 4;
 
 Cell percent(double relative) {
   return std::isfinite(relative) ? significant_cell(100 * relative, 3) : text_cell("not at all");
-}
-
-std::vector<double> series_of(const RunRecord& record, const char* name, std::size_t size) {
-  const auto found = record.series.find(name);
-  return found == record.series.end() || found->second.size() != size ? std::vector<double>{} : found->second;
 }
 
 // What stands behind `prefix` in the notes that begin with it.
@@ -42,10 +39,11 @@ Table parameters_table(const RunRecord& record) {
           {},
           {}};
   const double wanted = wanted_of(record);
-  const std::vector<double> deviations = series_of(record, "standard_deviations", record.parameters.size());
+  const std::vector<double>* deviations = series_of(record, "standard_deviations", record.parameters.size());
+  const std::size_t stated = deviations == nullptr ? 0 : deviations->size();
   int count = 0;
-  for (std::size_t i = 0; i < deviations.size(); ++i) {
-    const double sd = deviations[i];
+  for (std::size_t i = 0; i < stated; ++i) {
+    const double sd = (*deviations)[i];
     const bool determined = sd <= wanted;
     count += determined;
     t.rows.push_back(
@@ -56,7 +54,7 @@ Table parameters_table(const RunRecord& record) {
   t.notes.push_back(
       fmt::format("Standard deviation of a calibration by least squares, from simulated noise; determined: "
                   "at most {:g} %; {} of {}.",
-                  100 * wanted, count, deviations.size()));
+                  100 * wanted, count, stated));
   for (const std::string& note : record.notes)
     if (note.rfind(kUndeterminedNote, 0) != 0 && note.rfind(kProposedNote, 0) != 0)
       t.notes.push_back(note + ".");
@@ -72,12 +70,12 @@ Table directions_table(const RunRecord& record) {
           {"Singular values of the noise-weighted Jacobian in relative parameters; direction: its largest "
            "parts."}};
   const std::size_t n = record.parameters.size();
-  const std::vector<double> values = series_of(record, "singular_values", n);
-  const std::vector<double> directions = series_of(record, "directions", n * n);
-  const std::vector<double> deviations = series_of(record, "direction_deviations", n);
-  if (values.empty() || directions.empty() || deviations.empty()) return t;
+  const std::vector<double>* values = series_of(record, "singular_values", n);
+  const std::vector<double>* directions = series_of(record, "directions", n * n);
+  const std::vector<double>* deviations = series_of(record, "direction_deviations", n);
+  if (values == nullptr || directions == nullptr || deviations == nullptr) return t;
   for (std::size_t k = 0; k < n; ++k) {
-    const double* const vector = directions.data() + k * n;
+    const double* const vector = directions->data() + k * n;
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -87,8 +85,9 @@ Table directions_table(const RunRecord& record) {
       text +=
           fmt::format("{}{:+.2f} {}", i > 0 ? " " : "", vector[order[i]], record.parameters[order[i]].name);
     // Without any scatter along it the value is infinite, which a record has no number for.
-    const double value = std::isnan(values[k]) ? 1 / deviations[k] : values[k];
-    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), significant_cell(value, 4), percent(deviations[k]),
+    const double deviation = (*deviations)[k], stored = (*values)[k];
+    const double value = std::isnan(stored) ? 1 / deviation : stored;
+    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), significant_cell(value, 4), percent(deviation),
                       text_cell(text)});
   }
   return t;
@@ -117,10 +116,12 @@ Table proposals_table(const RunRecord& record) {
           {}};
   const double wanted = wanted_of(record);
   const std::vector<std::string> drives = noted(record, kProposedNote);
-  const std::vector<double> deviations = series_of(record, "proposed", drives.size());
-  for (std::size_t k = 0; k < deviations.size(); ++k)
-    t.rows.push_back({text_cell(fmt::format("{}", k + 1)), text_cell(drives[k]), percent(deviations[k])});
-  const bool met = !deviations.empty() && deviations.back() <= wanted;
+  const std::vector<double>* deviations = series_of(record, "proposed", drives.size());
+  if (deviations != nullptr)
+    for (std::size_t k = 0; k < drives.size(); ++k)
+      t.rows.push_back(
+          {text_cell(fmt::format("{}", k + 1)), text_cell(drives[k]), percent((*deviations)[k])});
+  const bool met = deviations != nullptr && !deviations->empty() && deviations->back() <= wanted;
   if (t.rows.empty())
     t.notes.push_back(fmt::format("Nothing to add: {:g} % is met.", 100 * wanted));
   else

@@ -3,27 +3,26 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace odobench {
 namespace {
 
-constexpr const char* kPosition = "arrival_position.";
-constexpr const char* kHeading = "arrival_heading.";
-constexpr int kDigits = 6;
+constexpr int kArrivalDigits = 6;
 
 Cell cell_of(const RunRecord& record, const std::string& name) {
   const auto found = record.statistics.find(name);
-  return found == record.statistics.end() ? Cell{} : fixed_cell(found->second, kDigits);
+  return found == record.statistics.end() ? Cell{} : fixed_cell(found->second, kArrivalDigits);
 }
 
-}  // namespace
-
+// Of one data set.
 std::optional<Table> arrival_table(const std::vector<RunRecord>& records) {
   std::vector<std::string> drives;
   if (!records.empty())
     for (const auto& [name, value] : records.front().statistics)
-      if (name.rfind(kPosition, 0) == 0) drives.push_back(name.substr(std::string(kPosition).size()));
+      if (name.rfind(kArrivalPosition, 0) == 0)
+        drives.push_back(name.substr(std::string(kArrivalPosition).size()));
   if (drives.empty()) return std::nullopt;
   Table table{"verify.arrival",
               "How far from the reference's end the robot really stopped",
@@ -38,12 +37,14 @@ std::optional<Table> arrival_table(const std::vector<RunRecord>& records) {
   for (const RunRecord& record : records) {
     table.rows.push_back({text_cell(record.label)});
     for (const std::string& drive : drives) {
-      table.rows.back().push_back(cell_of(record, kPosition + drive));
-      table.rows.back().push_back(cell_of(record, kHeading + drive));
+      table.rows.back().push_back(cell_of(record, kArrivalPosition + drive));
+      table.rows.back().push_back(cell_of(record, kArrivalHeading + drive));
     }
   }
   return table;
 }
+
+}  // namespace
 
 std::vector<Table> arrival_tables(const std::vector<RunRecord>& records) {
   std::map<std::string, std::vector<RunRecord>> sets;

@@ -4,7 +4,6 @@
 //               the reference's
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "reports/records/record.hpp"
@@ -14,9 +13,11 @@ namespace odobench {
 
 inline constexpr const char* kVerificationProblem = "verification";
 
-// verify.arrival of records that say where the robot ended; none otherwise. Of one data set (scenario).
-std::optional<Table> arrival_table(const std::vector<RunRecord>& records);
-// That of each data set among them, named in the title where there are several.
+inline constexpr const char* kArrivalPosition = "arrival_position.";
+inline constexpr const char* kArrivalHeading = "arrival_heading.";
+
+// verify.arrival of each data set (scenario) among the records of this problem that say where the robot
+// ended; named in the title where there are several.
 std::vector<Table> arrival_tables(const std::vector<RunRecord>& records);
 
 }  // namespace odobench
