@@ -21,6 +21,15 @@ Robot robot_4wis4wid() {
   return robot;
 }
 
+Recording recording_4wis4wid() {
+  Recording recording;
+  for (std::size_t i = 0; i < kWheelCount; ++i)
+    recording.signals.push_back({fmt::format("steering.{}", i + 1), SignalKind::Angle, {}});
+  for (std::size_t i = 0; i < kWheelCount; ++i)
+    recording.signals.push_back({fmt::format("wheel.{}", i + 1), SignalKind::Speed, {}});
+  return recording;
+}
+
 std::vector<Trajectory> trajectories_4wis4wid() {
   return {
       {"line_x", "straight line of 4 m along x, wheels ahead, 0.05 m/s"},

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/fusion/fusion.hpp"
 #include "problems/fusion/robot_model.hpp"
 
@@ -64,16 +65,16 @@ BENCHMARK_CAPTURE(step, ukf_predict, FilterKind::Unscented, false, false);
 
 // 80 s of wheels at 62.5 Hz, camera at 30 Hz, gyro at 50 Hz.
 void recording(benchmark::State& state, FilterKind kind) {
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.id = "made up";
   for (int k = 0; k < 5000; ++k) {
     r.time_us.push_back(k * 16'000);
-    r.x.push_back(0);
-    r.y.push_back(0);
-    r.theta.push_back(0);
+    r.reference.x.push_back(0);
+    r.reference.y.push_back(0);
+    r.reference.theta.push_back(0);
     for (std::size_t i = 0; i < kWheelCount; ++i) {
-      r.steering[i].push_back(0.1 * std::sin(0.01 * k));
-      r.wheel_speed[i].push_back(1.97);
+      steering_of(r, i).push_back(0.1 * std::sin(0.01 * k));
+      wheel_speed_of(r, i).push_back(1.97);
     }
   }
   std::vector<SensorStream> sensors{{"camera", SensorKind::Pose, 0.02, 0.02, 0, 0, {}},

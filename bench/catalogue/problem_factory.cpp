@@ -43,7 +43,7 @@ namespace {
 // A set may hold any finite number; sums of squares may not.
 void require_range(const std::string& path, const std::vector<Recording>& recordings) {
   for (const Recording& r : recordings)
-    for_each_value_column(r, [&](const std::string& name, const char*, const std::vector<double>& values) {
+    for_each_value_column(r, 1, [&](const std::string& name, const char*, const std::vector<double>& values) {
       for (std::size_t k = 0; k < values.size(); ++k)
         if (!in_range(values[k]))
           throw DataError(fmt::format(

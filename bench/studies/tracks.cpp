@@ -18,7 +18,8 @@ std::string tracks_csv(const CalibrationProblem& problem, const std::vector<Para
       const std::string key = csv_field(r.id) + "," + csv_field(set.label);
       for (std::size_t k = 0; k < r.size(); ++k)
         fmt::format_to(out, "{},{},{},{},{},{},{},{}\n", key, static_cast<double>(r.time_us[k]) * 1e-6,
-                       track.x[k], track.y[k], track.theta[k], r.x[k], r.y[k], r.theta[k]);
+                       track.x[k], track.y[k], track.theta[k], r.reference.x[k], r.reference.y[k],
+                       r.reference.theta[k]);
     }
   }
   return text;

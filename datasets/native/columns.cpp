@@ -1,5 +1,6 @@
 #include "datasets/native/columns.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace odobench {
@@ -18,18 +19,43 @@ std::optional<ColumnFault> find_stamp_fault(const std::vector<std::int64_t>& tim
   return {};
 }
 
+std::optional<ColumnFault> find_reference_fault(const Recording& recording) {
+  const std::vector<std::size_t>& at = recording.reference.sample;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (at[i] >= recording.size() || (i > 0 && at[i] <= at[i - 1]))
+      return ColumnFault{"x", at[i],
+                         fmt::format("found sample {} as number {} of the reference, expected increasing "
+                                     "samples below {}",
+                                     at[i], i, recording.size())};
+  return {};
+}
+
 }  // namespace
 
-std::optional<ColumnFault> find_fault(const Recording& recording) {
+std::string column_name(const Signal& signal, int schema) {
+  if (schema > 1) return signal.name;
+  const std::size_t dot = signal.name.find('.');
+  if (dot == std::string::npos) return signal.name;
+  const std::string number = signal.name.substr(dot + 1);
+  return (signal.kind == SignalKind::Speed ? "wheel_speed_" : signal.name.substr(0, dot) + "_") + number;
+}
+
+std::optional<ColumnFault> find_fault(const Recording& recording, int schema) {
   std::optional<ColumnFault> fault = find_stamp_fault(recording.time_us);
+  if (!fault) fault = find_reference_fault(recording);
+  const std::size_t references =
+      recording.reference.sample.empty() ? recording.size() : recording.reference.sample.size();
+  std::size_t column = 0;
   for_each_value_column(
-      recording, [&](const std::string& name, const char*, const std::vector<double>& values) {
+      recording, schema, [&](const std::string& name, const char*, const std::vector<double>& values) {
         if (fault) return;
-        if (values.size() != recording.size()) {
-          fault = ColumnFault{
-              name,
-              {},
-              fmt::format("found {} values, expected {} as in time_us", values.size(), recording.size())};
+        const std::size_t expected = column++ < 3 ? references : recording.size();
+        if (values.size() != expected) {
+          fault =
+              ColumnFault{name,
+                          {},
+                          fmt::format("found {} values, expected {}{}", values.size(), expected,
+                                      expected == recording.size() ? " as in time_us" : " of the reference")};
           return;
         }
         for (std::size_t k = 0; k < values.size(); ++k)

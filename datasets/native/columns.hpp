@@ -10,19 +10,23 @@
 
 namespace odobench {
 
-inline constexpr std::size_t kValueColumns = 3 + 2 * kWheelCount;
+// The name of a signal's column: the signal's own, but in files of schema 1, which know one robot,
+// "steering_1" for "steering.1" and "wheel_speed_1" for "wheel.1".
+std::string column_name(const Signal& signal, int schema);
 
-// Calls visit(name, unit, std::vector<double>&) for x, y, theta, steering_1..4, wheel_speed_1..4 (time_us is
-// apart: it holds integers).
+// Calls visit(name, unit, std::vector<double>&) for x, y, theta and the signals (time_us is apart: it holds
+// integers).
 template <class R, class Visit>
-void for_each_value_column(R& recording, Visit visit) {
-  visit(std::string("x"), "m", recording.x);
-  visit(std::string("y"), "m", recording.y);
-  visit(std::string("theta"), "rad", recording.theta);
-  for (std::size_t i = 0; i < kWheelCount; ++i)
-    visit(fmt::format("steering_{}", i + 1), "rad", recording.steering[i]);
-  for (std::size_t i = 0; i < kWheelCount; ++i)
-    visit(fmt::format("wheel_speed_{}", i + 1), "rad/s", recording.wheel_speed[i]);
+void for_each_value_column(R& recording, int schema, Visit visit) {
+  visit(std::string("x"), "m", recording.reference.x);
+  visit(std::string("y"), "m", recording.reference.y);
+  visit(std::string("theta"), "rad", recording.reference.theta);
+  for (auto& signal : recording.signals)
+    visit(column_name(signal, schema), unit_of(signal.kind), signal.values);
+}
+
+inline std::size_t value_columns(const Recording& recording) {
+  return 3 + recording.signals.size();
 }
 
 // The first thing wrong with a recording's columns.
@@ -32,7 +36,8 @@ struct ColumnFault {
   std::string what;                   // "found nan, expected a finite number"
 };
 
-// At least two samples, all columns equally long, stamps from 0 strictly increasing, values finite.
-std::optional<ColumnFault> find_fault(const Recording& recording);
+// At least two samples, all columns equally long, stamps from 0 strictly increasing, values finite; a
+// reference at some stamps only: at increasing stamps of the recording, at least one.
+std::optional<ColumnFault> find_fault(const Recording& recording, int schema);
 
 }  // namespace odobench

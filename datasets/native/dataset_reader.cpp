@@ -12,6 +12,7 @@
 #include "datasets/native/dataset_format.hpp"
 #include "datasets/native/recording_file.hpp"
 #include "datasets/native/validate.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
@@ -73,7 +74,7 @@ Provenance read_provenance(const JsonNode& node) {
 // Id, trajectory and repetition only: the set as a whole is checked before any recording is opened.
 Recording read_recording_head(const JsonNode& node) {
   node.allow_only({"id", "trajectory", "repetition", "samples", "file", "sha256", "columns"});
-  Recording recording;
+  Recording recording = recording_4wis4wid();
   recording.id = node.at("id").text();
   recording.trajectory = node.at("trajectory").text();
   const std::int64_t repetition = node.at("repetition").integer();
@@ -91,7 +92,7 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
   const JsonNode columns = node.at("columns");
   recording.time_us = columns.at("time_us").integers();
   std::size_t names = 1;
-  for_each_value_column(recording, [&](const std::string& name, const char*, std::vector<double>& values) {
+  for_each_value_column(recording, 1, [&](const std::string& name, const char*, std::vector<double>& values) {
     values = columns.at(name).numbers();
     ++names;
   });
@@ -99,7 +100,7 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
     columns.allow_only({"time_us", "x", "y", "theta", "steering_1", "steering_2", "steering_3", "steering_4",
                         "wheel_speed_1", "wheel_speed_2", "wheel_speed_3", "wheel_speed_4"});
   }
-  if (const auto fault = find_fault(recording)) {
+  if (const auto fault = find_fault(recording, 1)) {
     const JsonNode column = columns.at(fault->column);
     throw DataError(fmt::format("{}: {}{}: {}", column.file(), column.path(),
                                 fault->sample ? fmt::format("/{}", *fault->sample) : "", fault->what));

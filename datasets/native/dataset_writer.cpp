@@ -84,14 +84,14 @@ Json recording_head(const Recording& r) {
 Json inline_columns(const Recording& r) {
   Json columns = {{"time_us", r.time_us}};
   for_each_value_column(
-      r, [&](const std::string& name, const char*, const std::vector<double>& v) { columns[name] = v; });
+      r, 1, [&](const std::string& name, const char*, const std::vector<double>& v) { columns[name] = v; });
   return columns;
 }
 
 void check(const Dataset& d, const std::string& file) {
   validate_dataset(d, file);
   for (std::size_t i = 0; i < d.recordings.size(); ++i)
-    if (const auto fault = find_fault(d.recordings[i]))
+    if (const auto fault = find_fault(d.recordings[i], 1))
       throw DataError(
           fmt::format("{}: /recordings/{} ({}): {}{}: {}", file, i, d.recordings[i].id, fault->column,
                       fault->sample ? fmt::format(", sample {}", *fault->sample) : "", fault->what));

@@ -50,7 +50,7 @@ std::string header(const Recording& recording) {
                   kRecordingFormat, kRecordingFormatVersion, recording.id, recording.size());
   line += R"({"name": "time_us", "unit": "us", "type": "int64"})";
   for_each_value_column(
-      recording, [&](const std::string& name, const char* unit, const std::vector<double>&) {
+      recording, 1, [&](const std::string& name, const char* unit, const std::vector<double>&) {
         line += fmt::format(R"(, {{"name": "{}", "unit": "{}", "type": "float64"}})", name, unit);
       });
   line += "]}";
@@ -60,8 +60,8 @@ std::string header(const Recording& recording) {
 
 void check_columns(const JsonNode& columns, const Recording& recording) {
   const std::vector<JsonNode> found = columns.elements();
-  if (found.size() != 1 + kValueColumns)
-    columns.fail(fmt::format("{} columns", found.size()), fmt::format("{}", 1 + kValueColumns));
+  if (found.size() != 1 + value_columns(recording))
+    columns.fail(fmt::format("{} columns", found.size()), fmt::format("{}", 1 + value_columns(recording)));
   std::size_t next = 0;
   const auto check = [&](const std::string& name, const char* unit, const char* type) {
     const JsonNode& column = found[next++];
@@ -75,8 +75,10 @@ void check_columns(const JsonNode& columns, const Recording& recording) {
     member("type", type);
   };
   check("time_us", "us", "int64");
-  for_each_value_column(recording, [&](const std::string& name, const char* unit,
-                                       const std::vector<double>&) { check(name, unit, "float64"); });
+  for_each_value_column(recording, 1,
+                        [&](const std::string& name, const char* unit, const std::vector<double>&) {
+                          check(name, unit, "float64");
+                        });
 }
 
 // Returns the length of the header line.
@@ -109,17 +111,17 @@ std::size_t check_header(std::string_view bytes, const ExpectedRecording& expect
 
 std::string encode_recording(const Recording& recording) {
   std::string bytes = header(recording);
-  bytes.reserve(bytes.size() + (1 + kValueColumns) * kEntryBytes * recording.size());
+  bytes.reserve(bytes.size() + (1 + value_columns(recording)) * kEntryBytes * recording.size());
   append(bytes, recording.time_us);
   for_each_value_column(
-      recording, [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
+      recording, 1, [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
   return bytes;
 }
 
 void decode_recording(std::string_view bytes, const ExpectedRecording& expected, Recording& recording) {
   const std::size_t start = check_header(bytes, expected, recording);
   // Divided, not multiplied: a stated number of samples may be absurd.
-  constexpr std::size_t row = (1 + kValueColumns) * kEntryBytes;
+  const std::size_t row = (1 + value_columns(recording)) * kEntryBytes;
   const std::size_t body = bytes.size() - start;
   if (body % row != 0 || body / row != expected.samples)
     throw DataError(fmt::format(
@@ -133,14 +135,14 @@ void decode_recording(std::string_view bytes, const ExpectedRecording& expected,
   const std::size_t column = expected.samples * kEntryBytes;
   std::size_t offset = start;
   extract(bytes.substr(offset, column), recording.time_us);
-  for_each_value_column(recording, [&](const std::string&, const char*, std::vector<double>& values) {
+  for_each_value_column(recording, 1, [&](const std::string&, const char*, std::vector<double>& values) {
     offset += column;
     extract(bytes.substr(offset, column), values);
   });
-  const std::optional<ColumnFault> fault = find_fault(recording);
+  const std::optional<ColumnFault> fault = find_fault(recording, 1);
   if (!fault) return;
   std::size_t index = 0, next = 1;
-  for_each_value_column(recording, [&](const std::string& name, const char*, const std::vector<double>&) {
+  for_each_value_column(recording, 1, [&](const std::string& name, const char*, const std::vector<double>&) {
     if (name == fault->column) index = next;
     ++next;
   });

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/structure.hpp"
 
 namespace odobench {
@@ -47,7 +48,8 @@ void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recor
 }
 
 Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::size_t k) {
-  return {q.x[k] - recording.x[k], q.y[k] - recording.y[k], q.theta[k] - recording.theta[k]};
+  return {q.x[k] - recording.reference.x[k], q.y[k] - recording.reference.y[k],
+          q.theta[k] - recording.reference.theta[k]};
 }
 
 }  // namespace
@@ -58,7 +60,9 @@ CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
   check(parameters_, recordings_);
   for (const Recording& r : recordings_)
     for (std::size_t k = 0; k < r.size(); ++k)
-      exact_floor_ += static_cast<double>(k) * (r.x[k] * r.x[k] + r.y[k] * r.y[k] + r.theta[k] * r.theta[k]);
+      exact_floor_ += static_cast<double>(k) *
+                      (r.reference.x[k] * r.reference.x[k] + r.reference.y[k] * r.reference.y[k] +
+                       r.reference.theta[k] * r.reference.theta[k]);
   constexpr double kUnit = 2 * std::numeric_limits<double>::epsilon();
   exact_floor_ *= kUnit * kUnit;
   structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
@@ -119,9 +123,9 @@ void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorR
       gy += (q.x[k + 1] - q.x[k]) * gt;
       for (std::size_t i = 0; i < kWheelCount; ++i) {
         const auto w = static_cast<Eigen::Index>(i);
-        const double turn = 0.25 * dt * recording.wheel_speed[i][k];
-        const double c = turn * std::cos(recording.steering[i][k]),
-                     s = turn * std::sin(recording.steering[i][k]);
+        const double turn = 0.25 * dt * wheel_speed_of(recording, i)[k];
+        const double c = turn * std::cos(steering_of(recording, i)[k]),
+                     s = turn * std::sin(steering_of(recording, i)[k]);
         gx[w] += cos_theta * c - sin_theta * s;
         gy[w] += sin_theta * c + cos_theta * s;
         gt[4 + w] -= c;
@@ -141,9 +145,9 @@ std::vector<MaxErrors> CalibrationProblem::max_errors(const ConstVectorRef& z) c
     const PoseTrack q = direct::integrate(recording, z);
     MaxErrors e{recording.id, recording.trajectory, recording.repetition};
     for (std::size_t k = 0; k < recording.size(); ++k) {
-      e.x = std::max(e.x, std::abs(q.x[k] - recording.x[k]));
-      e.y = std::max(e.y, std::abs(q.y[k] - recording.y[k]));
-      e.theta = std::max(e.theta, std::abs(q.theta[k] - recording.theta[k]));
+      e.x = std::max(e.x, std::abs(q.x[k] - recording.reference.x[k]));
+      e.y = std::max(e.y, std::abs(q.y[k] - recording.reference.y[k]));
+      e.theta = std::max(e.theta, std::abs(q.theta[k] - recording.reference.theta[k]));
     }
     list.push_back(std::move(e));
   }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 
 namespace odobench::direct {
@@ -11,13 +12,13 @@ PoseTrack integrate(const Recording& recording, const ConstVectorRef& z) {
   PoseTrack q;
   q.x.assign(n, 0.0);
   q.y.assign(n, 0.0);
-  q.theta.assign(n, recording.theta.at(0));
+  q.theta.assign(n, recording.reference.theta.at(0));
   for (std::size_t k = 0; k + 1 < n; ++k) {
     double vx = 0, vy = 0, omega = 0;
     for (std::size_t i = 0; i < kWheelCount; ++i) {
       const auto w = static_cast<Eigen::Index>(i);
-      const double d = recording.steering[i][k];
-      const double v = r[w] * recording.wheel_speed[i][k];
+      const double d = steering_of(recording, i)[k];
+      const double v = r[w] * wheel_speed_of(recording, i)[k];
       vx += std::cos(d + q.theta[k]) / 4 * v;
       vy += std::sin(d + q.theta[k]) / 4 * v;
       omega += (-b[w] * std::cos(d) + a[w] * std::sin(d)) / (4 * (a[w] * a[w] + b[w] * b[w])) * v;
@@ -35,8 +36,8 @@ double cost(std::span<const Recording> recordings, const ConstVectorRef& z) {
   for (const Recording& recording : recordings) {
     const PoseTrack q = integrate(recording, z);
     for (std::size_t k = 1; k < recording.size(); ++k) {
-      const double ex = q.x[k] - recording.x[k], ey = q.y[k] - recording.y[k],
-                   et = q.theta[k] - recording.theta[k];
+      const double ex = q.x[k] - recording.reference.x[k], ey = q.y[k] - recording.reference.y[k],
+                   et = q.theta[k] - recording.reference.theta[k];
       sum += ex * ex + ey * ey + et * et;
     }
   }

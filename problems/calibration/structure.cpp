@@ -1,5 +1,7 @@
 #include "problems/calibration/structure.hpp"
 
+#include "datasets/robot_4wis4wid.hpp"
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -23,9 +25,9 @@ Increments increments_of(const Recording& recording) {
     const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
     for (std::size_t i = 0; i < kWheelCount; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const double turn = 0.25 * dt * recording.wheel_speed[i][k];
-      list(row, c) = turn * std::cos(recording.steering[i][k]);
-      list(row + 4, c) = turn * std::sin(recording.steering[i][k]);
+      const double turn = 0.25 * dt * wheel_speed_of(recording, i)[k];
+      list(row, c) = turn * std::cos(steering_of(recording, i)[k]);
+      list(row + 4, c) = turn * std::sin(steering_of(recording, i)[k]);
     }
   }
   return list;
@@ -48,8 +50,9 @@ class HeadingSums {
     Eigen::Matrix<long double, kHeading, 1> f = decltype(f)::Zero();
     for (Eigen::Index k = 0; k < list.cols(); ++k) {
       f += heading_increment(list.col(k)).cast<long double>();
-      const long double turned = static_cast<long double>(recording.theta[static_cast<std::size_t>(k) + 1]) -
-                                 static_cast<long double>(recording.theta[0]);
+      const long double turned =
+          static_cast<long double>(recording.reference.theta[static_cast<std::size_t>(k) + 1]) -
+          static_cast<long double>(recording.reference.theta[0]);
       if (filled_ == kRows) reduce();
       rows_.row(filled_++) << f.transpose().cast<double>(), static_cast<double>(f.dot(origin_) - turned);
     }
@@ -135,7 +138,7 @@ void CalibrationStructure::plan_recording(const Recording& recording, const Incr
   const long block_count = std::max(1L, increments / (w * kSegmentSteps));
   const long steps = increments / (w * block_count);
   RecordingPlan plan;
-  plan.theta0 = recording.theta[0];
+  plan.theta0 = recording.reference.theta[0];
   long next = 0;
   HeadingVector heading = HeadingVector::Zero();
   const auto add_block = [&](int width, long length) {
@@ -143,14 +146,14 @@ void CalibrationStructure::plan_recording(const Recording& recording, const Incr
     data_.resize(data_.size() + static_cast<std::size_t>(length * kStreams * width));
     for (int lane = 0; lane < width; ++lane) {
       const auto first = static_cast<std::size_t>(next);
-      plan.segments.push_back({length, heading, recording.x[first], recording.y[first]});
+      plan.segments.push_back({length, heading, recording.reference.x[first], recording.reference.y[first]});
       for (long k = 0; k < length; ++k, ++next) {
         const auto sample = static_cast<std::size_t>(next);
         const HeadingVector cs = list.col(next);
         double* row = &data_[block.data + static_cast<std::size_t>(k * kStreams * width + lane)];
         for (Eigen::Index j = 0; j < kHeading; ++j) row[j * width] = cs[j];
-        row[8 * width] = recording.x[sample + 1] - recording.x[first];
-        row[9 * width] = recording.y[sample + 1] - recording.y[first];
+        row[8 * width] = recording.reference.x[sample + 1] - recording.reference.x[first];
+        row[9 * width] = recording.reference.y[sample + 1] - recording.reference.y[first];
         heading += heading_increment(cs);
       }
     }

@@ -114,8 +114,8 @@ TrackErrors track_errors(const Recording& recording, const PoseTrack& track,
   out.max = {recording.id, recording.trajectory, recording.repetition};
   const std::size_t n = recording.size();
   const auto error = [&](std::size_t k) {
-    return Eigen::Vector3d(track.x[k] - recording.x[k], track.y[k] - recording.y[k],
-                           track.theta[k] - recording.theta[k]);
+    return Eigen::Vector3d(track.x[k] - recording.reference.x[k], track.y[k] - recording.reference.y[k],
+                           track.theta[k] - recording.reference.theta[k]);
   };
   double position = 0, heading = 0;
   for (std::size_t k = 0; k < n; ++k) {

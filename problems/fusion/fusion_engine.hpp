@@ -63,7 +63,7 @@ class FusionEngine {
   static WalkingState walking(const std::optional<WalkingState>& w) { return w.value_or(WalkingState{}); }
   static State start(const Recording& recording) {
     State x = State::Zero();
-    x[2] = recording.theta.at(0);
+    x[2] = recording.reference.theta.at(0);
     return Filter::kN == 3 ? x : State(Model::copy_map() * x);
   }
   static Matrix start_covariance(const FusionOptions& o) {

@@ -51,7 +51,9 @@ class Truth {
   }
 
  private:
-  Eigen::Vector3d value(std::size_t k) const { return {r_.x[k], r_.y[k], r_.theta[k]}; }
+  Eigen::Vector3d value(std::size_t k) const {
+    return {r_.reference.x[k], r_.reference.y[k], r_.reference.theta[k]};
+  }
   const Recording& r_;
   double width_;
   std::vector<double> time_;

@@ -98,9 +98,9 @@ void try_streams(const SensorsFile& file) {
   r.id = "check";
   for (int k = 0; k < 4; ++k) {
     r.time_us.push_back(k * 1000);
-    r.x.push_back(0);
-    r.y.push_back(0);
-    r.theta.push_back(0);
+    r.reference.x.push_back(0);
+    r.reference.y.push_back(0);
+    r.reference.theta.push_back(0);
   }
   make_streams(file, r, 1);
 }

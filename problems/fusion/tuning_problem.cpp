@@ -90,8 +90,9 @@ void FusionTuningProblem::residuals(const ConstVectorRef& x, VectorRef r) const 
         fuse(recording, wheels_, streams, options, objective_ == TuningObjective::Likelihood);
     if (objective_ == TuningObjective::Error) {
       for (std::size_t i = 0; i < recording.size(); ++i, row += 3)
-        r.segment<3>(row) << result.track.x[i] - recording.x[i], result.track.y[i] - recording.y[i],
-            result.track.theta[i] - recording.theta[i];
+        r.segment<3>(row) << result.track.x[i] - recording.reference.x[i],
+            result.track.y[i] - recording.reference.y[i],
+            result.track.theta[i] - recording.reference.theta[i];
       continue;
     }
     for (const double w : result.whitened) r[row++] = w;

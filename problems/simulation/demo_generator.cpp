@@ -114,8 +114,8 @@ std::array<double, 3> velocity(const Recording& r, std::size_t k, double theta) 
   double vx = 0, vy = 0, omega = 0;
   for (std::size_t i = 0; i < kWheelCount; ++i) {
     const double a = kTruth[i], b = kTruth[kWheelCount + i],
-                 v = kTruth[2 * kWheelCount + i] * r.wheel_speed[i][k];
-    const double d = r.steering[i][k];
+                 v = kTruth[2 * kWheelCount + i] * wheel_speed_of(r, i)[k];
+    const double d = steering_of(r, i)[k];
     vx += std::cos(d + theta) * v / 4;
     vy += std::sin(d + theta) * v / 4;
     omega += (-b * std::cos(d) + a * std::sin(d)) / (4 * (a * a + b * b)) * v;
@@ -127,9 +127,9 @@ std::array<double, 3> velocity(const Recording& r, std::size_t k, double theta) 
 void add_poses(Recording& r, Random& noise) {
   double x = 0, y = 0, theta = 0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    r.x.push_back(to_pose_grid(x + noise.normal(kPositionNoise)));
-    r.y.push_back(to_pose_grid(y + noise.normal(kPositionNoise)));
-    r.theta.push_back(to_pose_grid(theta + noise.normal(kHeadingNoise)));
+    r.reference.x.push_back(to_pose_grid(x + noise.normal(kPositionNoise)));
+    r.reference.y.push_back(to_pose_grid(y + noise.normal(kPositionNoise)));
+    r.reference.theta.push_back(to_pose_grid(theta + noise.normal(kHeadingNoise)));
     if (k + 1 == r.size()) break;
     const double dt = static_cast<double>(r.time_us[k + 1] - r.time_us[k]) * 1e-6;
     const auto [vx, vy, omega] = velocity(r, k, theta);
@@ -144,14 +144,14 @@ Recording make_recording(const Command& command, const Robot& robot, Random& noi
   for (std::size_t i = 0; i < kWheelCount; ++i)
     wheels.emplace_back(command, robot.parameters[i].nominal, robot.parameters[kWheelCount + i].nominal,
                         noise);
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.time_us = make_stamps(2 * kRest + kRamp + command.duration, noise);
   for (const std::int64_t stamp : r.time_us) {
     const double t = static_cast<double>(stamp) * 1e-6 - kRest;
     const double share = throttle(t, command.duration);
     for (std::size_t i = 0; i < kWheelCount; ++i) {
-      r.steering[i].push_back(to_grid(wheels[i].steering_at(t), kSteeringQuantum));
-      r.wheel_speed[i].push_back(share > 0 ? to_grid(share * wheels[i].speed_at(t), kSpeedQuantum) : 0.0);
+      steering_of(r, i).push_back(to_grid(wheels[i].steering_at(t), kSteeringQuantum));
+      wheel_speed_of(r, i).push_back(share > 0 ? to_grid(share * wheels[i].speed_at(t), kSpeedQuantum) : 0.0);
     }
   }
   add_poses(r, noise);

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "datasets/recording.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::simulate {
 

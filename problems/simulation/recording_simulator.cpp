@@ -11,6 +11,7 @@
 #include "base/random.hpp"
 #include "datasets/import/vitko2024/synchronise.hpp"
 #include "datasets/import/vitko2024/vitko2024_join.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/simulation/logging.hpp"
 #include "problems/simulation/plant.hpp"
 
@@ -179,18 +180,18 @@ Recording recording_of(const DriveLogs& logs, std::int64_t* start_us) {
 }
 
 Recording exact_recording(const RecordingScenario& s, const Drive& drive) {
-  Recording r;
+  Recording r = recording_4wis4wid();
   const double tick_s = 1 / s.odometry.rate_hz;
   Pose pose;
   WheelState wheels;
   const auto record = [&](std::int64_t tick) {
     r.time_us.push_back(std::llround(static_cast<double>(tick) * tick_s * 1e6));
-    r.x.push_back(pose.x);
-    r.y.push_back(pose.y);
-    r.theta.push_back(pose.theta);
+    r.reference.x.push_back(pose.x);
+    r.reference.y.push_back(pose.y);
+    r.reference.theta.push_back(pose.theta);
     for (std::size_t i = 0; i < kWheelCount; ++i) {
-      r.steering[i].push_back(wheels.steering[i]);
-      r.wheel_speed[i].push_back(wheels.speed[i]);
+      steering_of(r, i).push_back(wheels.steering[i]);
+      wheel_speed_of(r, i).push_back(wheels.speed[i]);
     }
   };
   PerWheel held{};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/dataset.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/simulation/kinematics.hpp"
 
 namespace odobench::simulate {

@@ -131,8 +131,8 @@ std::string truth_csv(const RecordingScenario& s, const SimulatedSet& set) {
     const SimulatedDrive& d = set.drives[i];
     if (s.exact) {
       for (std::size_t k = 0; k < r.size(); k += stride)
-        fmt::format_to(out, "{},{},{},{},{}\n", r.id, static_cast<double>(r.time_us[k]) * 1e-6, r.x[k],
-                       r.y[k], r.theta[k]);
+        fmt::format_to(out, "{},{},{},{},{}\n", r.id, static_cast<double>(r.time_us[k]) * 1e-6,
+                       r.reference.x[k], r.reference.y[k], r.reference.theta[k]);
     }
     for (std::size_t k = 0; k < d.logs.true_poses.size(); k += stride) {
       const Pose& p = d.logs.true_poses[k];

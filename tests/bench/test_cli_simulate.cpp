@@ -119,11 +119,10 @@ TEST(CliSimulate, RawFilesImportToTheSameRecordings) {
   for (std::size_t i = 0; i < a.recordings.size(); ++i) {
     EXPECT_EQ(a.recordings[i].id, b.recordings[i].id);
     EXPECT_EQ(a.recordings[i].time_us, b.recordings[i].time_us);
-    EXPECT_EQ(a.recordings[i].x, b.recordings[i].x);
-    EXPECT_EQ(a.recordings[i].steering, b.recordings[i].steering);
-    EXPECT_EQ(a.recordings[i].wheel_speed, b.recordings[i].wheel_speed);
+    EXPECT_EQ(a.recordings[i].reference.x, b.recordings[i].reference.x);
+    EXPECT_EQ(a.recordings[i].signals, b.recordings[i].signals);
     for (std::size_t k = 0; k < a.recordings[i].size(); ++k)
-      ASSERT_NEAR(a.recordings[i].theta[k], b.recordings[i].theta[k], 1e-12);
+      ASSERT_NEAR(a.recordings[i].reference.theta[k], b.recordings[i].reference.theta[k], 1e-12);
   }
 }
 

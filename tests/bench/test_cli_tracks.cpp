@@ -53,9 +53,9 @@ TEST(Tracks, AreThoseOfTheDirectForm) {
         EXPECT_NEAR(std::stod(cells[3]), track.x[k], 1e-10);
         EXPECT_NEAR(std::stod(cells[4]), track.y[k], 1e-10);
         EXPECT_NEAR(std::stod(cells[5]), track.theta[k], 1e-10);
-        EXPECT_EQ(std::stod(cells[6]), r.x[k]);
-        EXPECT_EQ(std::stod(cells[7]), r.y[k]);
-        EXPECT_EQ(std::stod(cells[8]), r.theta[k]);
+        EXPECT_EQ(std::stod(cells[6]), r.reference.x[k]);
+        EXPECT_EQ(std::stod(cells[7]), r.reference.y[k]);
+        EXPECT_EQ(std::stod(cells[8]), r.reference.theta[k]);
       }
     }
   EXPECT_EQ(row, rows.size());

@@ -57,9 +57,9 @@ void expect_same(const Dataset& a, const Dataset& b) {
     EXPECT_EQ(r.time_us, s.time_us);
     std::vector<std::vector<double>> columns;
     for_each_value_column(
-        r, [&](const std::string&, const char*, const std::vector<double>& c) { columns.push_back(c); });
+        r, 1, [&](const std::string&, const char*, const std::vector<double>& c) { columns.push_back(c); });
     std::size_t next = 0;
-    for_each_value_column(s, [&](const std::string& name, const char*, const std::vector<double>& c) {
+    for_each_value_column(s, 1, [&](const std::string& name, const char*, const std::vector<double>& c) {
       EXPECT_TRUE(same_bits(columns[next++], c)) << s.id << " " << name;
     });
   }
@@ -130,7 +130,7 @@ TEST(Dataset, RecordingFileIsTheDocumentedOne) {
   const Recording r = small_dataset().recordings[0];
   double theta = 0;
   std::memcpy(&theta, bytes.data() + header + 3 * 5 * 8, 8);
-  EXPECT_EQ(theta, r.theta[0]);
+  EXPECT_EQ(theta, r.reference.theta[0]);
 }
 
 TEST(Dataset, ASetWrittenByHandNeedsLittle) {
@@ -143,9 +143,9 @@ TEST(Dataset, ASetWrittenByHandNeedsLittle) {
                                                                    {"lower", p.lower},
                                                                    {"upper", p.upper}}
                                                         .dump();
-  Recording names;
+  Recording names = recording_4wis4wid();
   for_each_value_column(
-      names, [&](const std::string& n, const char*, auto&) { columns += ", \"" + n + "\": [0, 1.5, 2]"; });
+      names, 1, [&](const std::string& n, const char*, auto&) { columns += ", \"" + n + "\": [0, 1.5, 2]"; });
   const std::string set = R"({"schema": "odobench-dataset", "schema_version": 1, "name": "mine",
     "robot": {"name": "r", "kinematics": "4wis4wid", "parameters": [)" +
                           parameters + R"(]},
@@ -155,7 +155,7 @@ TEST(Dataset, ASetWrittenByHandNeedsLittle) {
   const Dataset d = load_dataset(folder.file("set.json", set));
   ASSERT_EQ(d.recordings.size(), 1u);
   EXPECT_EQ(d.recordings[0].time_us, (std::vector<std::int64_t>{0, 10, 25}));
-  EXPECT_EQ(d.recordings[0].wheel_speed[3], (std::vector<double>{0, 1.5, 2}));
+  EXPECT_EQ(wheel_speed_of(d.recordings[0], 3), (std::vector<double>{0, 1.5, 2}));
   EXPECT_TRUE(d.known_parameters.empty());
 }
 
@@ -166,7 +166,7 @@ TEST(Dataset, TheDocumentedExampleLoads) {
   const Dataset d = load_dataset(folder.file("set.json", text.substr(from, text.find("```", from) - from)));
   EXPECT_EQ(d.name, "garage");
   ASSERT_EQ(d.recordings.size(), 1u);
-  EXPECT_EQ(d.recordings[0].x[2], 0.02);
+  EXPECT_EQ(d.recordings[0].reference.x[2], 0.02);
   EXPECT_EQ(d.known_parameters.at(0).values[9], 0.0502);
 }
 
@@ -177,9 +177,9 @@ TEST(Dataset, SaveRefusesWhatLoadWouldRefuse) {
     spoil(d);
     return data_error([&] { save_dataset(d, folder / "set.json"); });
   };
-  EXPECT_TRUE(says(error([](Dataset& d) { d.recordings[1].x[1] = NAN; }),
+  EXPECT_TRUE(says(error([](Dataset& d) { d.recordings[1].reference.x[1] = NAN; }),
                    {"/recordings/1 (back_2): x, sample 1: found nan"}));
-  EXPECT_TRUE(says(error([](Dataset& d) { d.recordings[0].steering[2].pop_back(); }),
+  EXPECT_TRUE(says(error([](Dataset& d) { steering_of(d.recordings[0], 2).pop_back(); }),
                    {"steering_3", "found 4 values, expected 5"}));
   EXPECT_TRUE(says(error([](Dataset& d) { d.recordings[0] = awkward_recording("ahead", 1, 1); }),
                    {"found 1 samples"}));
@@ -214,7 +214,7 @@ TEST(Dataset, AFailedSaveKeepsTheOldSet) {
   const TemporaryFolder folder;
   save_dataset(small_dataset(), folder / "set.json");
   Dataset changed = small_dataset();
-  changed.recordings[0].x[0] = 17;
+  changed.recordings[0].reference.x[0] = 17;
   changed.recordings[1].id = "third";
   fs::create_directory(folder / "set_recordings/third.rec");
   EXPECT_NE(data_error([&] { save_dataset(changed, folder / "set.json"); }), "");

@@ -17,6 +17,7 @@
 #include "datasets/import/vitko2024/vitko2024_csv.hpp"
 #include "datasets/import/vitko2024/vitko2024_join.hpp"
 #include "datasets/native/columns.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
@@ -108,20 +109,20 @@ TEST(ImportVitko2024, MapsByNameAndSynchronises) {
   ASSERT_EQ(d.recordings.size(), 30u);
   EXPECT_TRUE(d.notes.empty());
   for (const Recording& r : d.recordings) {
-    EXPECT_FALSE(find_fault(r)) << r.id;
+    EXPECT_FALSE(find_fault(r, 1)) << r.id;
     ASSERT_EQ(r.size(), static_cast<std::size_t>(kRows - 29));
     for (int j = 0; j < kRows - 29; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const int row = j + 29;
       EXPECT_EQ(r.time_us[k], 20'000 * j);
-      EXPECT_EQ(r.x[k], row / 8.0);
-      EXPECT_EQ(r.y[k], -row / 4.0);
-      EXPECT_NEAR(r.theta[k], kTurn * row, 1e-13) << "unwrapped over two turns";
+      EXPECT_EQ(r.reference.x[k], row / 8.0);
+      EXPECT_EQ(r.reference.y[k], -row / 4.0);
+      EXPECT_NEAR(r.reference.theta[k], kTurn * row, 1e-13) << "unwrapped over two turns";
       const double p =
           (row - 0.5) / 16;  // the wheel signals are linear in time, so extrapolation goes on alike
       for (std::size_t i = 0; i < kWheelCount; ++i) {
-        EXPECT_NEAR(r.steering[i][k], static_cast<double>(i) + 1 + p, 1e-12);
-        EXPECT_NEAR(r.wheel_speed[i][k], 10 * (static_cast<double>(i) + 1) - p, 1e-12);
+        EXPECT_NEAR(steering_of(r, i)[k], static_cast<double>(i) + 1 + p, 1e-12);
+        EXPECT_NEAR(wheel_speed_of(r, i)[k], 10 * (static_cast<double>(i) + 1) - p, 1e-12);
       }
     }
   }
@@ -142,7 +143,7 @@ TEST(ImportVitko2024, SteeringIsInterpolatedAlongTheShorterArc) {
   }
   const Recording r = vitko2024::join(capture, wheels);
   for (std::size_t i = 0; i < kWheelCount; ++i)
-    for (const double angle : r.steering[i]) EXPECT_NEAR(std::cos(angle), -1, 1e-3) << angle;
+    for (const double angle : steering_of(r, i)) EXPECT_NEAR(std::cos(angle), -1, 1e-3) << angle;
 }
 
 TEST(ImportVitko2024, NamesTrajectoriesRobotAndSources) {
@@ -183,7 +184,8 @@ TEST(ImportVitko2024, TakesACloneAndWindowsLineEnds) {
   std::string text = read_file(clone / "dataset/abs_1.csv");
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
   write_file(clone / "dataset/abs_1.csv", text + "\r\n\n");
-  EXPECT_EQ(import_vitko2024(clone.path()).recordings[0].theta, plain.recordings[0].theta);
+  EXPECT_EQ(import_vitko2024(clone.path()).recordings[0].reference.theta,
+            plain.recordings[0].reference.theta);
 }
 
 TEST(ImportVitko2024, OtherNumbersOfPairsAreDrivesOfOneTrajectory) {
@@ -390,7 +392,7 @@ TEST(ImportVitko2024, ReproducesThePublishedRecordings) {
     const std::string number = std::to_string(i + 1);
     EXPECT_EQ(r.size(), reference["samples"][number].get<std::size_t>()) << r.id;
     EXPECT_EQ(r.time_us.back(), std::llround(reference["duration_s"][number].get<double>() * 1e6)) << r.id;
-    EXPECT_FALSE(find_fault(r)) << r.id;
+    EXPECT_FALSE(find_fault(r, 1)) << r.id;
     total += r.size();
   }
   EXPECT_EQ(total, reference["total_samples"].get<std::size_t>());
@@ -408,7 +410,7 @@ TEST(ImportVitko2024, ReproducesThePublishedRecordings) {
   }
   const Dataset parallel = import_vitko2024(folder, {}, 2);
   for (std::size_t i = 0; i < d.recordings.size(); ++i)
-    EXPECT_EQ(parallel.recordings[i].wheel_speed, d.recordings[i].wheel_speed) << i;
+    EXPECT_EQ(parallel.recordings[i].signals, d.recordings[i].signals) << i;
 }
 
 TEST(ImportVitko2024, TheCheckedInSumsAreThoseOfTheFiles) {

@@ -144,9 +144,9 @@ std::vector<Recording> driven_by(const Vector& truth, double noise) {
     const PoseTrack q = direct::integrate(r, truth);
     for (std::size_t k = 0; k < r.size(); ++k) {
       const double error = k > 0 ? noise * std::sin(1.0 + 12.9898 * static_cast<double>(k)) : 0.0;
-      r.x[k] = q.x[k] + error;
-      r.y[k] = q.y[k] - error;
-      r.theta[k] = q.theta[k] + error;
+      r.reference.x[k] = q.x[k] + error;
+      r.reference.y[k] = q.y[k] - error;
+      r.reference.theta[k] = q.theta[k] + error;
     }
   }
   return recordings;

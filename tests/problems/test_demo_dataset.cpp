@@ -1,5 +1,6 @@
 // The synthetic set that is part of the repository: reproducible, honest about its truth, and good enough to
 // find it.
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/simulation/demo_generator.hpp"
 
 #include <gtest/gtest.h>
@@ -55,10 +56,10 @@ TEST(DemoDataset, TheCommittedBytesAreTheGenerators) {
 TEST(DemoDataset, SeedsMakeOtherDrivesOfTheSameRobot) {
   const Dataset a = make_demo_dataset(1), b = make_demo_dataset(2);
   for (std::size_t i = 0; i < a.recordings.size(); ++i) {
-    EXPECT_NE(a.recordings[i].x, b.recordings[i].x) << i;
-    EXPECT_NE(a.recordings[i].steering, b.recordings[i].steering) << i;
+    EXPECT_NE(a.recordings[i].reference.x, b.recordings[i].reference.x) << i;
+    EXPECT_NE(steering_of(a.recordings[i], 0), steering_of(b.recordings[i], 0)) << i;
   }
-  EXPECT_NE(a.recordings[0].steering, a.recordings[1].steering) << "repetitions differ";
+  EXPECT_NE(steering_of(a.recordings[0], 0), steering_of(a.recordings[1], 0)) << "repetitions differ";
   EXPECT_EQ(a.known_parameters[0].values, b.known_parameters[0].values);
 }
 
@@ -70,9 +71,9 @@ TEST(DemoDataset, HasSixTrajectoriesOfFiveDrives) {
   for (std::size_t i = 0; i < 30; ++i) {
     const Recording& r = demo().recordings[i];
     EXPECT_EQ(r.trajectory, demo().trajectories[i / 5].name);
-    EXPECT_NEAR(r.x.back(), ends[i / 5][0], 0.6) << r.id;
-    EXPECT_NEAR(r.y.back(), ends[i / 5][1], 0.6) << r.id;
-    EXPECT_NEAR(r.theta.back(), ends[i / 5][2], 0.4) << r.id;
+    EXPECT_NEAR(r.reference.x.back(), ends[i / 5][0], 0.6) << r.id;
+    EXPECT_NEAR(r.reference.y.back(), ends[i / 5][1], 0.6) << r.id;
+    EXPECT_NEAR(r.reference.theta.back(), ends[i / 5][2], 0.4) << r.id;
     EXPECT_NEAR(static_cast<double>(r.time_us.back()) * 1e-6, i < 20 ? 82.4 : 42.4, 0.2) << r.id;
   }
 }
@@ -86,10 +87,10 @@ TEST(DemoDataset, SignalsLieOnTheEncodersGrid) {
     std::int64_t shortest = 1'000'000, longest = 0;
     for (std::size_t k = 0; k < r.size(); ++k) {
       for (std::size_t i = 0; i < kWheelCount; ++i) {
-        ASSERT_LT(off_grid(r.steering[i][k], steering), 1e-9);
-        ASSERT_LT(off_grid(r.wheel_speed[i][k], speed), 1e-9);
+        ASSERT_LT(off_grid(steering_of(r, i)[k], steering), 1e-9);
+        ASSERT_LT(off_grid(wheel_speed_of(r, i)[k], speed), 1e-9);
       }
-      ASSERT_EQ(r.x[k], std::round(r.x[k] * 1e7) / 1e7);
+      ASSERT_EQ(r.reference.x[k], std::round(r.reference.x[k] * 1e7) / 1e7);
       if (k == 0) continue;
       shortest = std::min(shortest, r.time_us[k] - r.time_us[k - 1]);
       longest = std::max(longest, r.time_us[k] - r.time_us[k - 1]);

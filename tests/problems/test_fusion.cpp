@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/fusion/fusion.hpp"
 #include "problems/fusion/robot_model.hpp"
 #include "problems/fusion/sensor_streams.hpp"
@@ -29,25 +30,27 @@ Vector nominal() {
 Recording exact_drive(int samples = 600) {
   Recording r = testing::synthetic_recording(samples, 0.016, 1);
   for (std::size_t i = 0; i < kWheelCount; ++i)
-    for (double& d : r.steering[i]) d *= 0.5;
+    for (double& d : steering_of(r, i)) d *= 0.5;
   const PoseTrack track = direct::integrate(r, nominal());
-  r.x = track.x;
-  r.y = track.y;
-  r.theta = track.theta;
+  r.reference.x = track.x;
+  r.reference.y = track.y;
+  r.reference.theta = track.theta;
   return r;
 }
 
 SensorStream heading(const Recording& r, std::size_t every, double sigma) {
   SensorStream s{"compass", SensorKind::Heading, 0, sigma, 0, 0, {}};
   for (std::size_t k = every; k < r.size(); k += every)
-    s.data.push_back({r.time_us[k], r.time_us[k], {0, 0, wrapped_angle(r.theta[k])}});
+    s.data.push_back({r.time_us[k], r.time_us[k], {0, 0, wrapped_angle(r.reference.theta[k])}});
   return s;
 }
 
 SensorStream pose(const Recording& r, std::size_t every, double position, double angle) {
   SensorStream s{"camera", SensorKind::Pose, position, angle, 0, 0, {}};
   for (std::size_t k = every; k < r.size(); k += every)
-    s.data.push_back({r.time_us[k], r.time_us[k], {r.x[k], r.y[k], wrapped_angle(r.theta[k])}});
+    s.data.push_back({r.time_us[k],
+                      r.time_us[k],
+                      {r.reference.x[k], r.reference.y[k], wrapped_angle(r.reference.theta[k])}});
   return s;
 }
 
@@ -203,18 +206,18 @@ TEST(Fusion, SmoothingEqualsBatchLeastSquares) {
   // Straight ahead with a known heading: x is a random walk about the odometry, a linear problem.
   constexpr Eigen::Index kSamples = 120;
   constexpr double kSigmaV = 0.02, kSigmaZ = 0.003, kSigma0 = 0.01;
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.id = "straight";
   SensorStream camera{"camera", SensorKind::Pose, kSigmaZ, 1.0, 0, 0, {}};
   for (Eigen::Index k = 0; k < kSamples; ++k) {
     r.time_us.push_back(k * 16'000 + (k % 3) * 1'000);
     for (std::size_t i = 0; i < kWheelCount; ++i) {
-      r.steering[i].push_back(0);
-      r.wheel_speed[i].push_back(2);
+      steering_of(r, i).push_back(0);
+      wheel_speed_of(r, i).push_back(2);
     }
-    r.x.push_back(0);
-    r.y.push_back(0);
-    r.theta.push_back(0);
+    r.reference.x.push_back(0);
+    r.reference.y.push_back(0);
+    r.reference.theta.push_back(0);
     if (k % 10 == 9)
       camera.data.push_back(
           {r.time_us.back(), r.time_us.back(), {0.05 * std::sin(1.0 * static_cast<double>(k)), 0, 0}});
@@ -266,7 +269,7 @@ TEST(Fusion, LearnsScaleAndBias) {
   for (std::size_t k = 0; k + 1 < r.size(); ++k) {
     const double dt = static_cast<double>(r.time_us[k + 1] - r.time_us[k]) * 1e-6;
     sensors[1].data.push_back(
-        {r.time_us[k], r.time_us[k], {(r.theta[k + 1] - r.theta[k]) / dt + 0.02, 0, 0}});
+        {r.time_us[k], r.time_us[k], {(r.reference.theta[k + 1] - r.reference.theta[k]) / dt + 0.02, 0, 0}});
   }
   FusionOptions options;
   options.gyro_bias = WalkingState{0.05, 1e-5};
@@ -376,8 +379,8 @@ TEST(SensorStreams, HaveTheErrorsTheyAreMadeWith) {
   for (const Measurement& m : clean) {
     const auto k = static_cast<std::size_t>(std::lower_bound(r.time_us.begin(), r.time_us.end(), m.time_us) -
                                             r.time_us.begin());
-    EXPECT_NEAR(m.value[0], r.x[k], 2e-3);
-    EXPECT_NEAR(wrapped_angle(m.value[2] - r.theta[k]), 0, 1e-2);
+    EXPECT_NEAR(m.value[0], r.reference.x[k], 2e-3);
+    EXPECT_NEAR(wrapped_angle(m.value[2] - r.reference.theta[k]), 0, 1e-2);
     EXPECT_EQ(m.arrival_us, m.time_us);
   }
   CameraErrors noisy;
@@ -406,7 +409,7 @@ TEST(SensorStreams, HaveTheErrorsTheyAreMadeWith) {
   for (std::size_t i = 0; i + 1 < gyro.size(); ++i)
     total += gyro[i].value[0] * static_cast<double>(gyro[i + 1].time_us - gyro[i].time_us) * 1e-6;
   const double seconds = static_cast<double>(r.time_us.back()) * 1e-6;
-  const double bias = (total - (r.theta.back() - r.theta.front())) / seconds;
+  const double bias = (total - (r.reference.theta.back() - r.reference.theta.front())) / seconds;
   EXPECT_GT(std::abs(bias), 1e-4);
   EXPECT_LT(std::abs(bias), 0.04);
   timing.rate_hz = 0;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/fusion/robot_model.hpp"
 #include "problems/kalman/consistency.hpp"
 #include "problems/kalman/linear_model.hpp"
@@ -52,11 +53,11 @@ std::string refusal(Action action) {
 }
 
 Twist twist_of_step(const json& step, const Vector& z) {
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.time_us = {0};
   for (std::size_t i = 0; i < kWheelCount; ++i) {
-    r.steering[i] = {step.at("delta").at(i).get<double>()};
-    r.wheel_speed[i] = {step.at("omega").at(i).get<double>()};
+    steering_of(r, i) = {step.at("delta").at(i).get<double>()};
+    wheel_speed_of(r, i) = {step.at("omega").at(i).get<double>()};
   }
   return wheel_twist(r, 0, z);
 }

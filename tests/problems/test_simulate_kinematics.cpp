@@ -156,9 +156,9 @@ TEST(SimulateExact, EndsWhereTheAnalysisSays) {
     const WheelState command = inverse_kinematics(nominal(), drive.phases[0].twist);
     expect_twist(true_twist(s.truth, command), entry.at("true_twist"), drive.name);
     const Recording r = exact_recording(s, drive);
-    EXPECT_NEAR(r.x.back(), entry.at("end_pose")[0].get<double>(), 1e-10) << drive.name;
-    EXPECT_NEAR(r.y.back(), entry.at("end_pose")[1].get<double>(), 1e-10) << drive.name;
-    EXPECT_NEAR(r.theta.back(), entry.at("end_pose")[2].get<double>(), 1e-10) << drive.name;
+    EXPECT_NEAR(r.reference.x.back(), entry.at("end_pose")[0].get<double>(), 1e-10) << drive.name;
+    EXPECT_NEAR(r.reference.y.back(), entry.at("end_pose")[1].get<double>(), 1e-10) << drive.name;
+    EXPECT_NEAR(r.reference.theta.back(), entry.at("end_pose")[2].get<double>(), 1e-10) << drive.name;
     ++cases;
   }
   EXPECT_EQ(cases, 24u);
@@ -198,11 +198,11 @@ TEST(SimulateExact, PosesAndCostsMatchTo1e9) {
       }
       worst = std::max(worst, std::abs(static_cast<double>(r.time_us.at(row)) * 1e-6 - v[0]));
       for (std::size_t i = 0; i < kWheelCount; ++i) {
-        worst = std::max(worst, std::abs(r.steering[i][row] - v[1 + i]));
-        worst = std::max(worst, std::abs(r.wheel_speed[i][row] - v[5 + i]));
+        worst = std::max(worst, std::abs(steering_of(r, i)[row] - v[1 + i]));
+        worst = std::max(worst, std::abs(wheel_speed_of(r, i)[row] - v[5 + i]));
       }
-      worst = std::max(
-          {worst, std::abs(r.x[row] - v[9]), std::abs(r.y[row] - v[10]), std::abs(r.theta[row] - v[11])});
+      worst = std::max({worst, std::abs(r.reference.x[row] - v[9]), std::abs(r.reference.y[row] - v[10]),
+                        std::abs(r.reference.theta[row] - v[11])});
     }
     EXPECT_LE(worst, 1e-9) << r.id;
   }

@@ -195,10 +195,9 @@ TEST(SimulateRecordings, TheSameSeedGivesTheSameBytesForAnyThreads) {
   for (std::size_t i = 0; i < 30; ++i) {
     const Recording &a = one.dataset.recordings[i], &b = four.dataset.recordings[i];
     EXPECT_EQ(a.time_us, b.time_us);
-    EXPECT_EQ(a.x, b.x);
-    EXPECT_EQ(a.theta, b.theta);
-    EXPECT_EQ(a.wheel_speed, b.wheel_speed);
-    EXPECT_NE(a.x, other.dataset.recordings[i].x);
+    EXPECT_EQ(a.reference, b.reference);
+    EXPECT_EQ(a.signals, b.signals);
+    EXPECT_NE(a.reference.x, other.dataset.recordings[i].reference.x);
     if (i > 0) {
       EXPECT_NE(a.time_us, one.dataset.recordings[i - 1].time_us);
     }
@@ -206,7 +205,7 @@ TEST(SimulateRecordings, TheSameSeedGivesTheSameBytesForAnyThreads) {
   EXPECT_EQ(truth_json(s, 11, one), truth_json(s, 11, four));
   // A drive alone has the bits it has among others.
   const SimulatedDrive alone = simulate_drive(s, s.drives[3], 2, 11);
-  EXPECT_EQ(alone.recording.x, one.dataset.recordings[16].x);
+  EXPECT_EQ(alone.recording.reference.x, one.dataset.recordings[16].reference.x);
 }
 
 TEST(SimulateRecordings, TheTruthLiesOnTheRecordingsClock) {
@@ -218,8 +217,8 @@ TEST(SimulateRecordings, TheTruthLiesOnTheRecordingsClock) {
   for (std::size_t k = 100; k < r.size(); k += 500) {
     const double t = 1e-6 * static_cast<double>(r.time_us[k] + d.log_time_us);
     const Pose& p = d.logs.true_poses.at(static_cast<std::size_t>(t / 0.016));
-    EXPECT_NEAR(r.x[k], p.x, 0.05 * 0.1);
-    EXPECT_NEAR(r.y[k], p.y, 1e-3);
+    EXPECT_NEAR(r.reference.x[k], p.x, 0.05 * 0.1);
+    EXPECT_NEAR(r.reference.y[k], p.y, 1e-3);
   }
 }
 

@@ -15,7 +15,7 @@ namespace odobench::testing {
 
 // Values whose last bits a careless format would lose.
 inline Recording awkward_recording(const std::string& trajectory, int repetition, std::size_t samples) {
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.id = trajectory + "_" + std::to_string(repetition);
   r.trajectory = trajectory;
   r.repetition = repetition;
@@ -24,7 +24,7 @@ inline Recording awkward_recording(const std::string& trajectory, int repetition
   std::size_t next = static_cast<std::size_t>(repetition);
   for (std::size_t k = 0; k < samples; ++k)
     r.time_us.push_back(static_cast<std::int64_t>(k * k) * 9'007'199'254'740'993);
-  for_each_value_column(r, [&](const std::string&, const char*, std::vector<double>& column) {
+  for_each_value_column(r, 1, [&](const std::string&, const char*, std::vector<double>& column) {
     for (std::size_t k = 0; k < samples; ++k) column.push_back(values[next++ % 8]);
   });
   return r;

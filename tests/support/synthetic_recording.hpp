@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "datasets/recording.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/problem.hpp"
 
 namespace odobench::testing {
@@ -24,7 +25,7 @@ inline std::vector<ParameterInfo> nominal_robot() {
 
 // `samples` >= 1 samples of about `step_s` seconds; deterministic in all arguments.
 inline Recording synthetic_recording(int samples, double step_s, int variant) {
-  Recording r;
+  Recording r = recording_4wis4wid();
   r.id = "synthetic_" + std::to_string(variant);
   r.trajectory = "synthetic";
   r.repetition = variant;
@@ -33,13 +34,13 @@ inline Recording synthetic_recording(int samples, double step_s, int variant) {
     const double s = k * step_s;
     r.time_us.push_back(t);
     t += static_cast<std::int64_t>(step_s * 1e6 * (1.0 + 0.4 * std::sin(1.7 * k + variant))) + 1;
-    r.x.push_back(0.04 * s + 0.01 * std::sin(s + variant));
-    r.y.push_back(0.02 * std::sin(0.3 * s));
-    r.theta.push_back(0.5 + 0.05 * s + 0.1 * std::sin(0.2 * s + variant));
+    r.reference.x.push_back(0.04 * s + 0.01 * std::sin(s + variant));
+    r.reference.y.push_back(0.02 * std::sin(0.3 * s));
+    r.reference.theta.push_back(0.5 + 0.05 * s + 0.1 * std::sin(0.2 * s + variant));
     for (std::size_t i = 0; i < kWheelCount; ++i) {
       const auto w = static_cast<double>(i);
-      r.steering[i].push_back(0.6 * std::sin(0.4 * s + w + variant) + 0.1 * w);
-      r.wheel_speed[i].push_back(1.5 + std::cos(0.7 * s + 2 * w) * (i == 2 ? -1 : 1));
+      steering_of(r, i).push_back(0.6 * std::sin(0.4 * s + w + variant) + 0.1 * w);
+      wheel_speed_of(r, i).push_back(1.5 + std::cos(0.7 * s + 2 * w) * (i == 2 ? -1 : 1));
     }
   }
   return r;

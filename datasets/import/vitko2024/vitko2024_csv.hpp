@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "datasets/recording.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::vitko2024 {
 
