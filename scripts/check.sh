@@ -49,6 +49,7 @@ problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems
 problems/fusion               problems problems/kalman problems/calibration datasets/recording.hpp
 problems/information          problems problems/calibration datasets/recording.hpp
+problems/robots               datasets
 problems/simulation           datasets/
 problems/simulation/motors    problems/simulation
 solvers                       problems/problem.hpp problems/instruction_set.hpp
