@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -88,12 +89,37 @@ std::string broken(const json::parse_error& e, std::string_view text, const std:
   return fmt::format("{}:{}: broken JSON: {}", file, line, what);
 }
 
+// Where key number `wanted` (from 1) of a text ends that is correct up to there.
+std::size_t end_of_key(std::string_view text, std::size_t wanted) {
+  std::vector<bool> in_object;
+  bool key_next = false;
+  std::size_t keys = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '{' || c == '[') in_object.push_back(c == '{');
+    if ((c == '}' || c == ']') && !in_object.empty()) in_object.pop_back();
+    if (c == '{' || c == ',') key_next = !in_object.empty() && in_object.back();
+    if (c != '"') continue;
+    for (++i; i < text.size() && text[i] != '"'; ++i)
+      if (text[i] == '\\') ++i;
+    if (key_next && ++keys == wanted) return i;
+    key_next = false;
+  }
+  return text.size();
+}
+
+// Thrown through the library when the key read last is in its object already.
+struct KeyTwice {
+  std::string key;
+  std::size_t number = 0;  // of the keys of the text, from 1
+};
+
 // Builds the document from the library's events, refuses a key that an object has already, and knows where
 // the reading is. Not the library's own parser with a callback: that one looks through all elements of an
 // array after every object in it, which is quadratic in the number of recordings.
 class Reading {
  public:
-  Reading(const std::string& file, json& root) : file_(file), root_(root) {}
+  explicit Reading(json& root) : root_(root) {}
 
   bool null() { return value(nullptr); }
   bool boolean(bool v) { return value(v); }
@@ -115,25 +141,25 @@ class Reading {
     const auto [member, is_new] = level.value->get_ref<json::object_t&>().emplace(name, nullptr);
     level.key = name;
     level.member = &member->second;
-    if (!is_new)
-      throw DataError(
-          fmt::format("{}: found the key {} twice in one object, expected once", file_, brief(json(name))));
+    ++keys_;
+    if (!is_new) throw KeyTwice{name, keys_};
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const json::exception& error) {
     if (const auto* broken = dynamic_cast<const json::parse_error*>(&error)) throw *broken;
     if (const auto* large = dynamic_cast<const json::out_of_range*>(&error)) throw *large;
-    throw DataError(fmt::format("{}: broken JSON: {}", file_, error.what()));
+    throw error;
   }
 
   // "/windows/3 (p003)/ax/5": numbers count from 0, the id or name of an element in brackets.
+  // Escaped, for messages.
   std::string place() const {
     std::string text;
     for (std::size_t k = 0; k < open_.size(); ++k) {
       text += "/" + (open_[k].is_array ? std::to_string(open_[k].index) : open_[k].key);
       if (k + 1 < open_.size() && !open_[k + 1].id.empty()) text += fmt::format(" ({})", open_[k + 1].id);
     }
-    return text.empty() ? "/" : text;
+    return text.empty() ? "/" : shown(text, kLongestPath);
   }
 
  private:
@@ -173,21 +199,56 @@ class Reading {
     if (!open_.empty() && open_.back().is_array) ++open_.back().index;
   }
 
-  const std::string& file_;
   json& root_;
   std::vector<Level> open_;
+  std::size_t keys_ = 0;
 };
+
+// The path to a value of the document: a walk through it, in no recursion, since it may be nested deeply.
+std::string path_to(const json* wanted, const json& root) {
+  struct Level {
+    const json* value;
+    json::const_iterator at;
+    std::size_t index;
+  };
+  if (wanted == &root) return "";
+  std::vector<Level> open{{&root, root.begin(), 0}};
+  while (!open.empty()) {
+    Level& level = open.back();
+    if (level.at == level.value->end()) {
+      open.pop_back();
+      if (!open.empty()) ++open.back().at, ++open.back().index;
+      continue;
+    }
+    const json& child = *level.at;
+    if (&child == wanted) break;
+    if (child.is_structured())
+      open.push_back({&child, child.begin(), 0});
+    else
+      ++level.at, ++level.index;
+  }
+  std::string path;
+  for (const Level& level : open)
+    path += "/" + (level.value->is_object() ? level.at.key() : std::to_string(level.index));
+  return path;
+}
 
 }  // namespace
 
 json parse_json(std::string_view text, const std::string& file, std::size_t line) {
   json root;
-  Reading reading(file, root);
+  Reading reading(root);
   try {
     json::sax_parse(text, &reading);
     return root;
+  } catch (const KeyTwice& e) {
+    throw DataError(fmt::format("{}:{}: {}: found the key {} twice in one object, expected once", file,
+                                line + line_breaks(text, end_of_key(text, e.number)), reading.place(),
+                                brief(json(e.key))));
   } catch (const json::parse_error& e) {
-    throw DataError(broken(e, text, file, line, reading.place()));
+    const std::string message = broken(e, text, file, line, reading.place());
+    if (e.byte > text.size()) throw JsonEndsEarly(message);
+    throw DataError(message);
   } catch (const json::out_of_range& e) {
     throw DataError(too_large(e, text, file, line, reading.place()));
   } catch (const json::exception& e) {
@@ -197,28 +258,48 @@ json parse_json(std::string_view text, const std::string& file, std::size_t line
 
 struct JsonNode::Document {
   std::string file;
+  std::size_t line = 0;  // 0: the file is the document
   json root;
 };
 
-JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value, std::string path)
-    : document_(std::move(document)), value_(value), path_(std::move(path)) {}
+JsonNode::JsonNode(std::shared_ptr<const Document> document, const json* value)
+    : document_(std::move(document)), value_(value) {}
 
 JsonNode JsonNode::parse(std::string_view text, const std::filesystem::path& file) {
   auto document = std::make_shared<Document>();
   document->file = file.string();
   document->root = parse_json(text, document->file);
   const json* root = &document->root;
-  return {std::move(document), root, ""};
+  return {std::move(document), root};
+}
+
+JsonNode JsonNode::parse_line(std::string_view text, const std::filesystem::path& file, std::size_t line) {
+  auto document = std::make_shared<Document>();
+  document->file = file.string();
+  document->line = line;
+  document->root = parse_json(text, document->file, line);
+  const json* root = &document->root;
+  return {std::move(document), root};
 }
 
 JsonNode JsonNode::read(const std::filesystem::path& file) {
   return parse(read_file(file), file);
 }
 
+std::string JsonNode::path() const {
+  return path_to(value_, document_->root);
+}
+
 void JsonNode::fail(const std::string& found, const std::string& expected) const {
-  throw DataError(fmt::format("{}: {}: found {}, expected {}", shown(document_->file, kLongestPath),
-                              path_.empty() ? "/" : shown(path_, kLongestPath), shown(found, kLongestFound),
+  const std::string place = path();
+  throw DataError(fmt::format("{}{}: {}: found {}, expected {}", shown(document_->file, kLongestPath),
+                              document_->line > 0 ? fmt::format(":{}", document_->line) : "",
+                              place.empty() ? "/" : shown(place, kLongestPath), shown(found, kLongestFound),
                               expected));
+}
+
+void JsonNode::fail(const std::string& expected) const {
+  fail(brief(*value_), expected);
 }
 
 const std::string& JsonNode::file() const {
@@ -230,10 +311,15 @@ bool JsonNode::has(const std::string& key) const {
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
-  if (!value_->is_object()) fail(brief(*value_), "an object");
+  if (auto member = find(key)) return *member;
+  fail(fmt::format("no key \"{}\"", key), "it");
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+  if (!value_->is_object()) fail("an object");
   const auto member = value_->find(key);
-  if (member == value_->end()) fail(fmt::format("no key \"{}\"", key), "it");
-  return {document_, &*member, path_ + "/" + key};
+  if (member == value_->end()) return std::nullopt;
+  return JsonNode(document_, &*member);
 }
 
 void JsonNode::allow_only(std::initializer_list<std::string_view> allowed) const {
@@ -243,25 +329,26 @@ void JsonNode::allow_only(std::initializer_list<std::string_view> allowed) const
 }
 
 std::vector<std::string> JsonNode::keys() const {
-  if (!value_->is_object()) fail(brief(*value_), "an object");
+  if (!value_->is_object()) fail("an object");
   std::vector<std::string> names;
   for (const auto& item : value_->items()) names.push_back(item.key());
   return names;
 }
 
 JsonNode JsonNode::element(std::size_t index) const {
-  return {document_, &(*value_)[index], fmt::format("{}/{}", path_, index)};
+  return {document_, &(*value_)[index]};
 }
 
 std::vector<JsonNode> JsonNode::elements() const {
-  if (!value_->is_array()) fail(brief(*value_), "an array");
+  if (!value_->is_array()) fail("an array");
   std::vector<JsonNode> nodes;
+  nodes.reserve(value_->size());
   for (std::size_t i = 0; i < value_->size(); ++i) nodes.push_back(element(i));
   return nodes;
 }
 
 std::string JsonNode::text() const {
-  if (!value_->is_string()) fail(brief(*value_), "a text");
+  if (!value_->is_string()) fail("a text");
   return value_->get<std::string>();
 }
 
@@ -270,14 +357,14 @@ std::string JsonNode::text_or_empty(const std::string& key) const {
 }
 
 bool JsonNode::boolean() const {
-  if (!value_->is_boolean()) fail(brief(*value_), "true or false");
+  if (!value_->is_boolean()) fail("true or false");
   return value_->get<bool>();
 }
 
 double JsonNode::number() const {
-  if (!value_->is_number()) fail(brief(*value_), "a number");
+  if (!value_->is_number()) fail("a number");
   const auto value = value_->get<double>();
-  if (!in_range(value)) fail(brief(*value_), fmt::format("a number of at most {:g} in size", kLargestNumber));
+  if (!in_range(value)) fail(fmt::format("a number of at most {:g} in size", kLargestNumber));
   return value;
 }
 
@@ -285,13 +372,52 @@ std::int64_t JsonNode::integer() const {
   const bool fits =
       !value_->is_number_unsigned() ||
       value_->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  if (!value_->is_number_integer() || !fits) fail(brief(*value_), "an integer");
+  if (!value_->is_number_integer() || !fits) fail("an integer");
   return value_->get<std::int64_t>();
 }
 
-// Paths are built for the entry that is wrong only: an inline recording has thousands.
+std::int64_t JsonNode::count() const {
+  const std::int64_t value = integer();
+  if (value < 0) fail("an integer >= 0");
+  return value;
+}
+
+std::uint64_t JsonNode::unsigned_integer() const {
+  // One that is not from a text may be signed and positive.
+  const bool negative =
+      !value_->is_number_unsigned() && value_->is_number_integer() && value_->get<std::int64_t>() < 0;
+  if (!value_->is_number_integer() || negative) fail("an integer >= 0 of 64 bits");
+  return value_->get<std::uint64_t>();
+}
+
+int JsonNode::small_integer() const {
+  const std::int64_t value = integer();
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max())
+    fail("an integer of 32 bits");
+  return static_cast<int>(value);
+}
+
+std::optional<double> JsonNode::optional_number() const {
+  if (value_->is_null()) return std::nullopt;
+  if (!value_->is_number()) fail("a number");
+  return value_->get<double>();
+}
+
+double JsonNode::stored_number() const {
+  return optional_number().value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::vector<double> JsonNode::stored_numbers() const {
+  if (!value_->is_array()) fail("an array of numbers");
+  std::vector<double> values;
+  values.reserve(value_->size());
+  for (std::size_t i = 0; i < value_->size(); ++i)
+    values.push_back((*value_)[i].is_number() ? (*value_)[i].get<double>() : element(i).stored_number());
+  return values;
+}
+
 std::vector<double> JsonNode::numbers() const {
-  if (!value_->is_array()) fail(brief(*value_), "an array of numbers");
+  if (!value_->is_array()) fail("an array of numbers");
   std::vector<double> values;
   values.reserve(value_->size());
   for (std::size_t i = 0; i < value_->size(); ++i)
@@ -300,11 +426,19 @@ std::vector<double> JsonNode::numbers() const {
 }
 
 std::vector<std::int64_t> JsonNode::integers() const {
-  if (!value_->is_array()) fail(brief(*value_), "an array of integers");
+  if (!value_->is_array()) fail("an array of integers");
   std::vector<std::int64_t> values;
   values.reserve(value_->size());
   for (std::size_t i = 0; i < value_->size(); ++i) values.push_back(element(i).integer());
   return values;
+}
+
+json finite_or_null(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+json finite_or_null(const std::optional<double>& value) {
+  return value ? finite_or_null(*value) : json(nullptr);
 }
 
 }  // namespace odobench

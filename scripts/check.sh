@@ -36,7 +36,7 @@ datasets/native               datasets
 datasets/import               datasets datasets/csv
 reports/records
 reports/statistics            reports/records
-reports/render                reports/records
+reports/render
 reports/regression            reports/records reports/statistics reports/render
 reports/figures               reports/render
 reports/kinds                 reports/records reports/statistics reports/render reports/figures

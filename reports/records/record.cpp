@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "base/files.hpp"
 #include "base/json_node.hpp"
-#include "reports/records/json_view.hpp"
 
 namespace odobench {
 namespace {
@@ -24,18 +24,17 @@ json to_json(const ParameterValue& p) {
           {"at_bound", p.at_bound}};
 }
 
-ParameterValue parameter_from(const JsonView& view) {
+ParameterValue parameter_from(const JsonNode& node) {
   ParameterValue p;
-  p.name = view.at("name").string();
-  p.unit = view.at("unit").string();
-  p.value = view.at("value").number();
-  p.nominal = view.at("nominal").number();
-  p.lower = view.at("lower").number();
-  p.upper = view.at("upper").number();
-  p.at_bound = view.at("at_bound").string();
+  p.name = node.at("name").text();
+  p.unit = node.at("unit").text();
+  p.value = node.at("value").stored_number();
+  p.nominal = node.at("nominal").stored_number();
+  p.lower = node.at("lower").stored_number();
+  p.upper = node.at("upper").stored_number();
+  p.at_bound = node.at("at_bound").text();
   if (!p.at_bound.empty() && p.at_bound != "lower" && p.at_bound != "upper")
-    throw std::runtime_error(fmt::format("{}/at_bound: expected \"\", \"lower\" or \"upper\", found \"{}\"",
-                                         view.path(), p.at_bound));
+    node.at("at_bound").fail("\"\", \"lower\" or \"upper\"");
   return p;
 }
 
@@ -48,12 +47,13 @@ json to_json(const RecordingError& e) {
           {"theta", finite_or_null(e.max_error[2])}};
 }
 
-RecordingError error_from(const JsonView& view) {
+RecordingError error_from(const JsonNode& node) {
   RecordingError e;
-  e.recording = view.at("recording").string();
-  e.trajectory = view.at("trajectory").string();
-  e.repetition = view.at("repetition").small_integer();
-  e.max_error = {view.at("x").number(), view.at("y").number(), view.at("theta").number()};
+  e.recording = node.at("recording").text();
+  e.trajectory = node.at("trajectory").text();
+  e.repetition = node.at("repetition").small_integer();
+  e.max_error = {node.at("x").stored_number(), node.at("y").stored_number(),
+                 node.at("theta").stored_number()};
   return e;
 }
 
@@ -63,8 +63,9 @@ json to_json(const TracePoint& point) {
           {"cost", finite_or_null(point.cost)}};
 }
 
-TracePoint trace_point_from(const JsonView& view) {
-  return {view.at("evaluations").count(), view.at("seconds").number(), view.at("cost").number()};
+TracePoint trace_point_from(const JsonNode& node) {
+  return {node.at("evaluations").count(), node.at("seconds").stored_number(),
+          node.at("cost").stored_number()};
 }
 
 json to_json(const OptimalityRecord& c) {
@@ -74,9 +75,9 @@ json to_json(const OptimalityRecord& c) {
           {"evaluations", c.evaluations}};
 }
 
-OptimalityRecord check_from(const JsonView& view) {
-  return {view.at("test").string(), view.at("value").number(), view.at("limit").number(),
-          view.at("evaluations").count()};
+OptimalityRecord check_from(const JsonNode& node) {
+  return {node.at("test").text(), node.at("value").stored_number(), node.at("limit").stored_number(),
+          node.at("evaluations").count()};
 }
 
 json to_json(const KnownAnswer& k) {
@@ -86,9 +87,9 @@ json to_json(const KnownAnswer& k) {
           {"promise_by_differences", finite_or_null(k.promise)}};
 }
 
-KnownAnswer known_from(const JsonView& view) {
-  return {view.at("cost").number(), view.at("digits").optional_number(), view.at("solved").boolean(),
-          view.at("promise_by_differences").optional_number()};
+KnownAnswer known_from(const JsonNode& node) {
+  return {node.at("cost").stored_number(), node.at("digits").optional_number(), node.at("solved").boolean(),
+          node.at("promise_by_differences").optional_number()};
 }
 
 json to_json(const RunContext& c) {
@@ -103,17 +104,17 @@ json to_json(const RunContext& c) {
           {"kernel", c.kernel}};
 }
 
-RunContext context_from(const JsonView& view) {
+RunContext context_from(const JsonNode& node) {
   RunContext c;
-  c.cpu = view.at("cpu").string();
-  c.compiler = view.at("compiler").string();
-  c.build_type = view.at("build_type").string();
-  c.git_revision = view.at("git_revision").string();
-  c.version = view.at("version").string();
-  c.threads = view.at("threads").small_integer();
-  if (const auto command = view.find("command")) c.command = command->string();
-  if (const auto libraries = view.find("libraries")) c.libraries = libraries->string();
-  if (const auto kernel = view.find("kernel")) c.kernel = kernel->string();
+  c.cpu = node.at("cpu").text();
+  c.compiler = node.at("compiler").text();
+  c.build_type = node.at("build_type").text();
+  c.git_revision = node.at("git_revision").text();
+  c.version = node.at("version").text();
+  c.threads = node.at("threads").small_integer();
+  if (const auto command = node.find("command")) c.command = command->text();
+  if (const auto libraries = node.find("libraries")) c.libraries = libraries->text();
+  if (const auto kernel = node.find("kernel")) c.kernel = kernel->text();
   return c;
 }
 
@@ -124,60 +125,53 @@ json list_of(const std::vector<T>& items) {
   return list;
 }
 
-void read_identity(const JsonView& view, RunRecord& r) {
-  r.problem = view.at("problem").string();
-  r.dataset = view.at("dataset").string();
-  r.dataset_sha256 = view.at("dataset_sha256").string();
-  r.label = view.at("label").string();
-  r.kind = view.at("kind").string();
+void read_identity(const JsonNode& node, RunRecord& r) {
+  r.problem = node.at("problem").text();
+  r.dataset = node.at("dataset").text();
+  r.dataset_sha256 = node.at("dataset_sha256").text();
+  r.label = node.at("label").text();
+  r.kind = node.at("kind").text();
   if (r.kind != "run" && r.kind != "evaluation" && r.kind != "skipped")
-    throw std::runtime_error(
-        fmt::format("/kind: expected \"run\", \"evaluation\" or \"skipped\", found \"{}\"", r.kind));
-  r.solver = view.at("solver").string();
-  view.at("options").each_field(
-      [&](const std::string& key, const JsonView& value) { r.options[key] = value.string(); });
-  r.polish = view.at("polish").string();
-  r.seed = view.at("seed").unsigned_integer();
-  r.base_seed = view.at("base_seed").unsigned_integer();
-  r.repetition = view.at("repetition").small_integer();
-  r.start = view.at("start").string();
-  if (const auto box = view.find("box")) r.box = box->string();
-  if (const auto random = view.find("random")) r.random = random->boolean();
-  if (const auto budget = view.find("budget"))
-    budget->each_field(
-        [&](const std::string& key, const JsonView& value) { r.budget[key] = value.number(); });
+    node.at("kind").fail("\"run\", \"evaluation\" or \"skipped\"");
+  r.solver = node.at("solver").text();
+  const JsonNode options = node.at("options");
+  for (const std::string& key : options.keys()) r.options[key] = options.at(key).text();
+  r.polish = node.at("polish").text();
+  r.seed = node.at("seed").unsigned_integer();
+  r.base_seed = node.at("base_seed").unsigned_integer();
+  r.repetition = node.at("repetition").small_integer();
+  r.start = node.at("start").text();
+  if (const auto box = node.find("box")) r.box = box->text();
+  if (const auto random = node.find("random")) r.random = random->boolean();
+  if (const auto budget = node.find("budget"))
+    for (const std::string& key : budget->keys()) r.budget[key] = budget->at(key).stored_number();
 }
 
-void read_outcome(const JsonView& view, RunRecord& r) {
-  r.termination = view.at("termination").string();
-  r.message = view.at("message").string();
-  if (const auto check = view.find("check")) r.check = check_from(*check);
-  if (const auto known = view.find("known")) r.known = known_from(*known);
-  r.cost = view.at("cost").optional_number();
-  r.cost_before_polish = view.at("cost_before_polish").optional_number();
-  view.at("parameters").each_item([&](const JsonView& item) {
-    r.parameters.push_back(parameter_from(item));
-  });
-  view.at("errors").each_item([&](const JsonView& item) { r.errors.push_back(error_from(item)); });
-  r.evaluations = view.at("evaluations").count();
-  r.cost_evaluations = view.at("cost_evaluations").count();
-  r.derivative_evaluations = view.at("derivative_evaluations").count();
-  r.non_finite = view.at("non_finite").count();
-  r.iterations = view.at("iterations").count();
-  r.seconds = view.at("seconds").number();
-  view.at("trace").each_item([&](const JsonView& item) { r.trace.push_back(trace_point_from(item)); });
-  if (const auto notes = view.find("notes"))  // absent in records of other makers: none
-    notes->each_item([&](const JsonView& item) { r.notes.push_back(item.string()); });
-  if (const auto group = view.find("group")) r.group = group->string();
-  if (const auto statistics = view.find("statistics"))
-    statistics->each_field(
-        [&](const std::string& key, const JsonView& value) { r.statistics[key] = value.number(); });
-  if (const auto series = view.find("series"))
-    series->each_field([&](const std::string& key, const JsonView& list) {
-      list.each_item([&](const JsonView& value) { r.series[key].push_back(value.number()); });
-    });
-  r.context = context_from(view.at("context"));
-  r.time_utc = view.at("time_utc").string();
+void read_outcome(const JsonNode& node, RunRecord& r) {
+  r.termination = node.at("termination").text();
+  r.message = node.at("message").text();
+  if (const auto check = node.find("check")) r.check = check_from(*check);
+  if (const auto known = node.find("known")) r.known = known_from(*known);
+  r.cost = node.at("cost").optional_number();
+  r.cost_before_polish = node.at("cost_before_polish").optional_number();
+  for (const JsonNode& item : node.at("parameters").elements()) r.parameters.push_back(parameter_from(item));
+  for (const JsonNode& item : node.at("errors").elements()) r.errors.push_back(error_from(item));
+  r.evaluations = node.at("evaluations").count();
+  r.cost_evaluations = node.at("cost_evaluations").count();
+  r.derivative_evaluations = node.at("derivative_evaluations").count();
+  r.non_finite = node.at("non_finite").count();
+  r.iterations = node.at("iterations").count();
+  r.seconds = node.at("seconds").stored_number();
+  for (const JsonNode& item : node.at("trace").elements()) r.trace.push_back(trace_point_from(item));
+  if (const auto notes = node.find("notes"))  // absent in records of other makers: none
+    for (const JsonNode& item : notes->elements()) r.notes.push_back(item.text());
+  if (const auto group = node.find("group")) r.group = group->text();
+  if (const auto statistics = node.find("statistics"))
+    for (const std::string& key : statistics->keys()) r.statistics[key] = statistics->at(key).stored_number();
+  if (const auto series = node.find("series"))
+    for (const std::string& key : series->keys()) r.series[key] = series->at(key).stored_numbers();
+  r.context = context_from(node.at("context"));
+  r.time_utc = node.at("time_utc").text();
 }
 
 }  // namespace
@@ -228,16 +222,13 @@ json to_json(const RunRecord& r) {
   return out;
 }
 
-RunRecord record_from_json(const json& document) {
-  const JsonView view(document);
-  const JsonView version = view.at("schema_version");
+RunRecord record_from(const JsonNode& node) {
+  const JsonNode version = node.at("schema_version");
   if (version.integer() != kRecordSchemaVersion)
-    throw std::runtime_error(
-        fmt::format("/schema_version: expected {}, found {}: written by another version of this program",
-                    kRecordSchemaVersion, version.integer()));
+    version.fail(fmt::format("{}: it was written by another version of this program", kRecordSchemaVersion));
   RunRecord record;
-  read_identity(view, record);
-  read_outcome(view, record);
+  read_identity(node, record);
+  read_outcome(node, record);
   return record;
 }
 
@@ -255,33 +246,24 @@ std::string to_json_line(const RunRecord& record) {
 constexpr std::uintmax_t kLargestRecords = std::uintmax_t{1} << 33;
 
 std::vector<RunRecord> read_records(const std::string& path) {
-  const std::string text = read_file(path, kLargestRecords);
+  const std::string content = read_file(path, kLargestRecords);
+  const std::string_view text = content;
   std::vector<RunRecord> records;
   std::size_t begin = 0;
-  for (int line_number = 1; begin < text.size(); ++line_number) {
+  for (std::size_t line_number = 1; begin < text.size(); ++line_number) {
     const std::size_t newline = text.find('\n', begin);
-    const bool ended = newline != std::string::npos;
-    const std::size_t end = ended ? newline : text.size();
-    const std::string line = text.substr(begin, end - begin);
-    begin = end + 1;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const bool ended = newline != std::string_view::npos;
+    const std::string_view line = text.substr(begin, ended ? newline - begin : newline);
+    begin += line.size() + 1;
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     try {
-      records.push_back(record_from_json(json::parse(line)));
-    } catch (const json::parse_error& error) {
-      if (!ended && error.byte > line.size())
-        throw std::runtime_error(
-            fmt::format("{}:{}: truncated record: the file ends after {} characters of the line, without its "
-                        "closing brace",
-                        path, line_number, line.size()));
-      throw std::runtime_error(
-          fmt::format("{}:{}: column {}: {}", path, line_number, error.byte, complaint(error)));
-    } catch (const json::out_of_range&) {
-      parse_json(line, path, static_cast<std::size_t>(line_number));  // says which number
-      throw;
-    } catch (const json::exception& error) {
-      throw std::runtime_error(fmt::format("{}:{}: {}", path, line_number, complaint(error)));
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("{}:{}: {}", path, line_number, error.what()));
+      records.push_back(record_from(JsonNode::parse_line(line, path, line_number)));
+    } catch (const JsonEndsEarly&) {
+      if (ended) throw;
+      throw DataError(
+          fmt::format("{}:{}: truncated record: the file ends after {} characters of the line, without its "
+                      "closing brace",
+                      path, line_number, line.size()));
     }
   }
   return records;

@@ -11,6 +11,8 @@
 
 namespace odobench {
 
+class JsonNode;
+
 inline constexpr int kRecordSchemaVersion = 1;
 
 // e_n = max_k |estimate - reference| of one recording, for x, y [m] and theta [rad].
@@ -131,8 +133,8 @@ inline constexpr std::array<const char*, 5> kIdentifiabilitySeries{
 // Doubles keep every bit, except that JSON has no word for what is not finite: it is written as null and read
 // as not-a-number (an optional cost: as absent).
 nlohmann::json to_json(const RunRecord& record);
-// Throws std::runtime_error naming the field, what was found and what was expected.
-RunRecord record_from_json(const nlohmann::json& json);
+// DataError names the field, what was found and what was expected. Fields that it does not know are ignored.
+RunRecord record_from(const JsonNode& node);
 
 // Whether `converged` was said though a step found without the problem's own derivatives would still gain:
 // more than ten times what the verdict's test allows, and at least 1e-6 of the cost.
@@ -140,8 +142,8 @@ bool false_verdict(const RunRecord& record);
 
 // One line, without a newline at its end.
 std::string to_json_line(const RunRecord& record);
-// Reads a .jsonl file, empty lines are passed over; throws std::runtime_error "file:line:
-// /parameters/3/lower: expected a number, found a string". Fields that it does not know are ignored.
+// Reads a .jsonl file by record_from(), empty lines are passed over; DataError "file:line:
+// /parameters/3/lower: found "x", expected a number".
 std::vector<RunRecord> read_records(const std::string& path);
 
 }  // namespace odobench

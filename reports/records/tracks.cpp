@@ -6,11 +6,11 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "base/files.hpp"
 #include "base/json_node.hpp"
-#include "reports/records/json_view.hpp"
 
 namespace odobench {
 namespace {
@@ -69,11 +69,11 @@ std::vector<double> read_npy(const fs::path& file, const std::string& shape, std
   const std::string bytes = read_file(file);
   const std::string header = npy_header(shape);
   if (bytes.compare(0, header.size(), header) != 0)
-    throw std::runtime_error(
+    throw DataError(
         fmt::format("{}: expected a NumPy array of float64 with shape ({})", file.string(), shape));
   if (bytes.size() != header.size() + 8 * count)
-    throw std::runtime_error(fmt::format("{}: {} bytes of data, expected {}", file.string(),
-                                         bytes.size() - header.size(), 8 * count));
+    throw DataError(fmt::format("{}: {} bytes of data, expected {}", file.string(),
+                                bytes.size() - header.size(), 8 * count));
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = little_endian(bytes.data() + header.size() + 8 * i);
   return values;
@@ -91,33 +91,33 @@ PoseColumns read_pose(const fs::path& file, std::size_t n) {
 }
 
 // A file of the folder itself: an index from elsewhere must not read other places.
-fs::path file_in(const fs::path& folder, const JsonView& name) {
-  const fs::path path = name.string();
+fs::path file_in(const fs::path& folder, const JsonNode& name) {
+  const fs::path path = name.text();
   if (path.empty() || path != path.filename()) name.fail("the name of a file in the same folder");
   return folder / path;
 }
 
-TrackSet read_index(const JsonView& root, const fs::path& folder) {
+TrackSet read_index(const JsonNode& root, const fs::path& folder) {
   if (root.at("schema_version").integer() != kTracksSchemaVersion)
     root.at("schema_version").fail(fmt::format("{}", kTracksSchemaVersion));
   TrackSet set;
-  set.problem = root.at("problem").string();
-  set.dataset = root.at("dataset").string();
-  set.dataset_sha256 = root.at("dataset_sha256").string();
+  set.problem = root.at("problem").text();
+  set.dataset = root.at("dataset").text();
+  set.dataset_sha256 = root.at("dataset_sha256").text();
   std::size_t n = 0;
-  root.at("recordings").each_item([&](const JsonView& item) {
+  for (const JsonNode& item : root.at("recordings").elements()) {
     const std::int64_t samples = item.at("samples").integer();
     if (samples < 1 || samples > 1'000'000'000) item.at("samples").fail("a number of samples");
-    set.recordings.push_back({item.at("id").string(), item.at("trajectory").string(),
+    set.recordings.push_back({item.at("id").text(), item.at("trajectory").text(),
                               item.at("repetition").small_integer(), n, static_cast<std::size_t>(samples)});
     n += static_cast<std::size_t>(samples);
-  });
+  }
   set.time_s = read_npy(file_in(folder, root.at("time")), fmt::format("{},", n), n);
   set.reference = read_pose(file_in(folder, root.at("reference")), n);
-  root.at("tracks").each_item([&](const JsonView& item) {
-    set.tracks.push_back({item.at("label").string(), item.at("repetition").small_integer(),
+  for (const JsonNode& item : root.at("tracks").elements()) {
+    set.tracks.push_back({item.at("label").text(), item.at("repetition").small_integer(),
                           read_pose(file_in(folder, item.at("file")), n)});
-  });
+  }
   return set;
 }
 
@@ -158,14 +158,7 @@ std::optional<TrackSet> read_tracks(const fs::path& run_directory) {
   const fs::path folder = run_directory / kFolder;
   const fs::path file = folder / "tracks.json";
   if (!fs::exists(file)) return std::nullopt;
-  const json document = parse_json(read_file(file), file.string());
-  try {
-    return read_index(JsonView(document), folder);
-  } catch (const std::runtime_error& error) {
-    const std::string what = error.what();
-    if (what.rfind(folder.string(), 0) == 0) throw;  // about an array, which names its file
-    throw std::runtime_error(fmt::format("{}: {}", file.string(), what));
-  }
+  return read_index(JsonNode::read(file), folder);
 }
 
 }  // namespace odobench

@@ -52,8 +52,8 @@ struct TrackSet {
 // std::invalid_argument when lengths differ.
 std::vector<std::pair<std::filesystem::path, std::string>> track_files(const TrackSet& set);
 
-// Of a run directory; none when it has no tracks/tracks.json. Throws std::runtime_error "file: what was
-// found, what was expected".
+// Of a run directory; none when it has no tracks/tracks.json. DataError "file: what was found,
+// what was expected".
 std::optional<TrackSet> read_tracks(const std::filesystem::path& run_directory);
 
 }  // namespace odobench

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "base/files.hpp"
 #include "base/json_node.hpp"
-#include "reports/records/json_view.hpp"
 #include "reports/regression/metrics.hpp"
 #include "reports/statistics/row_groups.hpp"
 
@@ -22,75 +21,75 @@ using nlohmann::json;
 constexpr std::array<std::pair<const char*, const char*>, 3> kSamples{
     {{"J", "cost"}, {"total", "total"}, {"evaluations", "evaluations"}}};
 
-double tolerance_from(const JsonView& view) {
-  const std::optional<double> value = view.optional_number();
-  if (!value || !(*value >= 0) || std::isinf(*value)) view.fail("a tolerance >= 0");
+double tolerance_from(const JsonNode& node) {
+  const std::optional<double> value = node.optional_number();
+  if (!value || !(*value >= 0) || std::isinf(*value)) node.fail("a tolerance >= 0");
   return *value;
 }
 
 // Fields that are absent keep the values of `fallback`; the file's own must all be there.
-Tolerances tolerances_from(const JsonView& view, const Tolerances& fallback, bool complete) {
-  view.only_keys({"cost_relative", "error_m", "error_rad", "total", "evaluations_factor"});
+Tolerances tolerances_from(const JsonNode& node, const Tolerances& fallback, bool complete) {
+  node.allow_only({"cost_relative", "error_m", "error_rad", "total", "evaluations_factor"});
   Tolerances result = fallback;
   const auto read = [&](const char* key, double& field) {
-    if (complete || view.find(key)) field = tolerance_from(view.at(key));
+    if (complete || node.find(key)) field = tolerance_from(node.at(key));
   };
   read("cost_relative", result.cost_relative);
   read("error_m", result.error_m);
   read("error_rad", result.error_rad);
   read("total", result.total);
-  if (complete || view.find("evaluations_factor")) {
-    const JsonView factor = view.at("evaluations_factor");
+  if (complete || node.find("evaluations_factor")) {
+    const JsonNode factor = node.at("evaluations_factor");
     result.evaluations_factor = factor.optional_number();
     if (result.evaluations_factor && !(*result.evaluations_factor >= 1)) factor.fail("null or a factor >= 1");
   }
   return result;
 }
 
-TrajectoryErrors errors_from(const std::string& trajectory, const JsonView& view) {
-  view.only_keys({"x", "y", "theta"});
+TrajectoryErrors errors_from(const std::string& trajectory, const JsonNode& node) {
+  node.allow_only({"x", "y", "theta"});
   TrajectoryErrors errors{trajectory, {}};
   for (std::size_t v = 0; v < 3; ++v) {
-    const JsonView cells = view.at(kPoseVariables[v]);
-    cells.only_keys({"e_max", "e_sr", "sigma"});
-    errors.variables[v] = {cells.at("e_max").number(), cells.at("e_sr").number(), cells.at("sigma").number()};
+    const JsonNode cells = node.at(kPoseVariables[v]);
+    cells.allow_only({"e_max", "e_sr", "sigma"});
+    errors.variables[v] = {cells.at("e_max").stored_number(), cells.at("e_sr").stored_number(),
+                           cells.at("sigma").stored_number()};
   }
   return errors;
 }
 
-BaselineEntry entry_from(const JsonView& view, const Tolerances& defaults) {
-  view.only_keys({"problem", "dataset", "box", "label", "kind", "cost", "evaluations", "totals", "errors",
-                  "samples", "tolerances"});
+BaselineEntry entry_from(const JsonNode& node, const Tolerances& defaults) {
+  node.allow_only({"problem", "dataset", "box", "label", "kind", "cost", "evaluations", "totals", "errors",
+                   "samples", "tolerances"});
   BaselineEntry entry;
-  entry.problem = view.at("problem").string();
-  entry.dataset = view.at("dataset").string();
-  entry.label = view.at("label").string();
-  if (const auto box = view.find("box")) entry.box = box->string();
-  entry.kind = view.at("kind").string();
+  entry.problem = node.at("problem").text();
+  entry.dataset = node.at("dataset").text();
+  entry.label = node.at("label").text();
+  if (const auto box = node.find("box")) entry.box = box->text();
+  entry.kind = node.at("kind").text();
   if (entry.kind != "run" && entry.kind != "evaluation" && entry.kind != "skipped")
-    view.at("kind").fail("\"run\", \"evaluation\" or \"skipped\"");
-  entry.cost = view.at("cost").optional_number();
-  if (const auto evaluations = view.find("evaluations")) entry.evaluations = evaluations->integer();
-  if (const auto totals = view.find("totals")) {
-    totals->only_keys({"x", "y", "theta", "total"});
-    entry.totals = Totals{{totals->at("x").number(), totals->at("y").number(), totals->at("theta").number()},
-                          totals->at("total").number()};
+    node.at("kind").fail("\"run\", \"evaluation\" or \"skipped\"");
+  entry.cost = node.at("cost").optional_number();
+  if (const auto evaluations = node.find("evaluations")) entry.evaluations = evaluations->integer();
+  if (const auto totals = node.find("totals")) {
+    totals->allow_only({"x", "y", "theta", "total"});
+    entry.totals = Totals{{totals->at("x").stored_number(), totals->at("y").stored_number(),
+                           totals->at("theta").stored_number()},
+                          totals->at("total").stored_number()};
   }
-  if (const auto errors = view.find("errors"))
-    errors->each_field([&](const std::string& trajectory, const JsonView& cells) {
-      entry.errors.push_back(errors_from(trajectory, cells));
-    });
-  if (const auto samples = view.find("samples")) {
-    samples->only_keys({"cost", "evaluations", "total"});
-    samples->each_field([&](const std::string& name, const JsonView& values) {
+  if (const auto errors = node.find("errors"))
+    for (const std::string& trajectory : errors->keys())
+      entry.errors.push_back(errors_from(trajectory, errors->at(trajectory)));
+  if (const auto samples = node.find("samples")) {
+    samples->allow_only({"cost", "evaluations", "total"});
+    for (const std::string& name : samples->keys()) {
       std::vector<double>& sample = entry.samples[name];
-      values.each_item([&](const JsonView& value) {
+      for (const JsonNode& value : samples->at(name).elements())
         sample.push_back(value.optional_number().value_or(std::numeric_limits<double>::infinity()));
-      });
-      if (sample.empty()) values.fail("at least one number");
-    });
+      if (sample.empty()) samples->at(name).fail("at least one number");
+    }
   }
-  const auto own = view.find("tolerances");
+  const auto own = node.find("tolerances");
   entry.tolerances = own ? tolerances_from(*own, defaults, false) : defaults;
   return entry;
 }
@@ -99,21 +98,20 @@ bool same_place(const BaselineEntry& a, const BaselineEntry& b) {
   return a.problem == b.problem && a.dataset == b.dataset && a.label == b.label;
 }
 
-Baseline baseline_from(const JsonView& view) {
-  view.only_keys({"schema_version", "tolerances", "entries"});
-  const JsonView version = view.at("schema_version");
+Baseline baseline_from(const JsonNode& node) {
+  node.allow_only({"schema_version", "tolerances", "entries"});
+  const JsonNode version = node.at("schema_version");
   if (version.integer() != kBaselineSchemaVersion) version.fail(std::to_string(kBaselineSchemaVersion));
   Baseline baseline;
-  baseline.tolerances = tolerances_from(view.at("tolerances"), {}, true);
-  view.at("entries").each_item([&](const JsonView& item) {
+  baseline.tolerances = tolerances_from(node.at("tolerances"), {}, true);
+  for (const JsonNode& item : node.at("entries").elements()) {
     BaselineEntry entry = entry_from(item, baseline.tolerances);
     for (const BaselineEntry& other : baseline.entries)
       if (same_place(entry, other))
-        throw std::runtime_error(
-            fmt::format("{}: a second entry with the label '{}'", item.path(), entry.label));
+        item.fail(fmt::format("a second entry with the label \"{}\"", entry.label), "one");
     baseline.entries.push_back(std::move(entry));
-  });
-  if (baseline.entries.empty()) throw std::runtime_error("/entries: expected at least one entry, found none");
+  }
+  if (baseline.entries.empty()) node.at("entries").fail("at least one entry");
   return baseline;
 }
 
@@ -195,14 +193,9 @@ void check_tolerances(const Tolerances& t) {
 }  // namespace
 
 Baseline read_baseline(const std::string& path) {
-  const json document = parse_json(read_file(path), path);
-  try {
-    Baseline baseline = baseline_from(JsonView(document));
-    baseline.source = path;
-    return baseline;
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
-  }
+  Baseline baseline = baseline_from(JsonNode::read(path));
+  baseline.source = path;
+  return baseline;
 }
 
 Baseline make_baseline(const std::vector<RunRecord>& records, const Tolerances& tolerances) {

@@ -68,7 +68,7 @@ struct Baseline {
   std::vector<BaselineEntry> entries;
 };
 
-// Throws std::runtime_error "file: /entries/3/errors/line_x/x/e_max: expected a number, found a string".
+// DataError "file: /entries/3/errors/line_x/x/e_max: found "x", expected a number".
 Baseline read_baseline(const std::string& path);
 
 // One entry per label, its trajectories in alphabetical order; of several runs with one label the median run

@@ -1,8 +1,9 @@
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
+#include "base/json_node.hpp"
 #include "base/text.hpp"
-#include "reports/records/json_view.hpp"
 #include "reports/render/table.hpp"
 
 namespace odobench {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/data_error.hpp"
@@ -72,8 +74,15 @@ TEST(ParseJson, NamesTheLineOfANumberThatIsTooLarge) {
 }
 
 TEST(ParseJson, RefusesAKeyTwice) {
-  EXPECT_EQ(parsing("{\"a\": 1, \"b\": {\"a\": 2}, \"a\": 3}"),
-            "f: found the key \"a\" twice in one object, expected once");
+  const std::string twice = " found the key \"a\" twice in one object, expected once";
+  EXPECT_EQ(parsing("{\"a\": 1, \"b\": {\"a\": 2}, \"a\": 3}"), "f:1: /a:" + twice);
+  EXPECT_EQ(parsing("{\"a\": 1,\n\"b\": {\"a\":\n2},\n\"a\": 3,\n\"c\": 1}", 10), "f:13: /a:" + twice);
+  // Texts that look like keys, braces and quotes in texts, keys in other objects.
+  EXPECT_EQ(parsing("[\"a\",\n\"{\\\"a\\\":\",\n{\"b\": \"a\", \"c\": [\"a\", {\"a\": []}, \"a\"],\n\"a\": "
+                    "1,\n\"a\": 2}]"),
+            "f:5: /2/a:" + twice);
+  EXPECT_EQ(parsing("{\"a\": 1,\n\"a\""), "f:2: /a:" + twice);
+  EXPECT_EQ(parsing(R"({"\u001b[2J": {"a": 1, "a": 2}})"), "f:1: /\\x1b[2J/a:" + twice);
   EXPECT_EQ(parsing("[{\"a\": 1}, {\"a\": 2}]"), "");
 }
 
@@ -96,12 +105,17 @@ TEST(JsonNode, MembersAndElements) {
   EXPECT_EQ(root.at("b").elements()[1].path(), "/b/1");
   EXPECT_EQ(root.file(), "f");
   EXPECT_NO_THROW(root.allow_only({"a", "b", "c"}));
+  EXPECT_FALSE(root.find("t"));
+  ASSERT_TRUE(root.find("a"));
+  EXPECT_EQ(root.find("a")->at("t").text(), "text");
 }
 
 TEST(JsonNode, RefusalsSayWhatWasFound) {
   using Node = const JsonNode&;
   EXPECT_EQ(refusal("[1, 2]", [](Node n) { n.at("a"); }), "f: /: found an array of 2, expected an object");
   EXPECT_EQ(refusal("[]", [](Node n) { n.keys(); }), "f: /: found an array of 0, expected an object");
+  EXPECT_EQ(refusal("[]", [](Node n) { n.find("a"); }), "f: /: found an array of 0, expected an object");
+  EXPECT_EQ(refusal("7", [](Node n) { n.fail("a miracle"); }), "f: /: found 7, expected a miracle");
   EXPECT_EQ(refusal("{}", [](Node n) { n.at("a"); }), "f: /: found no key \"a\", expected it");
   EXPECT_EQ(refusal("{\"a\": 1, \"c\": 1}",
                     [](Node n) {
@@ -118,6 +132,84 @@ TEST(JsonNode, RefusalsSayWhatWasFound) {
   EXPECT_EQ(refusal("\"1\"", [](Node n) { n.number(); }), "f: /: found \"1\", expected a number");
   EXPECT_EQ(refusal("[1, \"x\"]", [](Node n) { n.numbers(); }), "f: /1: found \"x\", expected a number");
   EXPECT_EQ(refusal("[1, 2.0]", [](Node n) { n.integers(); }), "f: /1: found 2.0, expected an integer");
+}
+
+TEST(JsonNode, PathsAreFoundWhenAskedFor) {
+  const JsonNode root = JsonNode::parse(R"([[], {}, {"a": [1, {"b": [[], 2]}], "c": 3}, {"a": [1]}])", "f");
+  EXPECT_EQ(root.path(), "");
+  EXPECT_EQ(root.elements()[0].path(), "/0");
+  EXPECT_EQ(root.elements()[1].path(), "/1");
+  EXPECT_EQ(root.elements()[2].at("a").elements()[1].at("b").elements()[1].path(), "/2/a/1/b/1");
+  EXPECT_EQ(root.elements()[2].at("c").path(), "/2/c");
+  EXPECT_EQ(root.elements()[3].at("a").elements()[0].path(), "/3/a/0");
+  const std::string deep(100'000, '[');  // no recursion
+  EXPECT_EQ(refusal(deep + std::string(deep.size(), ']'), [](const JsonNode& n) { n.elements()[0].text(); }),
+            "f: /0: found an array of 1, expected a text");
+}
+
+TEST(JsonNode, OneLineOfManyIsNamed) {
+  const auto text = [](const std::string& line) {
+    return data_error([&] { JsonNode::parse_line(line, "f", 7).at("a").text(); });
+  };
+  EXPECT_EQ(text("{\"a\": \"b\"}"), "");
+  EXPECT_EQ(text("{\"a\": 1}"), "f:7: /a: found 1, expected a text");
+  EXPECT_EQ(text("{}"), "f:7: /: found no key \"a\", expected it");
+  EXPECT_TRUE(says(text("{\"a\" 1}"), {"f:7: broken JSON: "}));
+  EXPECT_EQ(text("{\"a\": 1, \"a\": 2}"), "f:7: /a: found the key \"a\" twice in one object, expected once");
+}
+
+TEST(JsonNode, TextThatEndsEarlyIsTold) {
+  for (const char* cut : {"{", "{\"a\": 1", "{\"a\": \"b", "[1,", "tru", ""})
+    EXPECT_THROW(parse_json(cut, "f"), JsonEndsEarly) << cut;
+  for (const char* broken : {"{]", "{\"a\" 1}", "[1] 2", "nul }"}) {
+    EXPECT_THROW(parse_json(broken, "f"), DataError) << broken;
+    try {
+      parse_json(broken, "f");
+    } catch (const JsonEndsEarly& e) {
+      ADD_FAILURE() << broken << ": " << e.what();
+    } catch (const DataError&) {
+    }
+  }
+}
+
+TEST(JsonNode, WhatIsNotFiniteIsStoredAsNull) {
+  using Node = const JsonNode&;
+  EXPECT_EQ(finite_or_null(1.5).dump(), "1.5");
+  EXPECT_EQ(finite_or_null(std::numeric_limits<double>::infinity()).dump(), "null");
+  EXPECT_EQ(finite_or_null(std::optional<double>()).dump(), "null");
+  EXPECT_EQ(finite_or_null(std::optional<double>(std::nan(""))).dump(), "null");
+  const JsonNode root = JsonNode::parse(R"({"a": null, "b": 1e300, "c": [2, null, 1e60]})", "f");
+  EXPECT_TRUE(std::isnan(root.at("a").stored_number()));
+  EXPECT_FALSE(root.at("a").optional_number());
+  EXPECT_EQ(root.at("b").stored_number(), 1e300);
+  EXPECT_EQ(root.at("b").optional_number(), 1e300);
+  const std::vector<double> list = root.at("c").stored_numbers();
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[0], 2);
+  EXPECT_TRUE(std::isnan(list[1]));
+  EXPECT_EQ(list[2], 1e60);
+  EXPECT_EQ(refusal("{}", [](Node n) { n.stored_number(); }), "f: /: found an object, expected a number");
+  EXPECT_EQ(refusal("[1, \"x\"]", [](Node n) { n.stored_numbers(); }),
+            "f: /1: found \"x\", expected a number");
+  EXPECT_EQ(refusal("1", [](Node n) { n.stored_numbers(); }), "f: /: found 1, expected an array of numbers");
+}
+
+TEST(JsonNode, IntegersOfEveryKind) {
+  using Node = const JsonNode&;
+  const auto node = [](const char* text) { return JsonNode::parse(text, "f"); };
+  EXPECT_EQ(node("0").count(), 0);
+  EXPECT_EQ(node("18446744073709551615").unsigned_integer(), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(node("2147483647").small_integer(), std::numeric_limits<int>::max());
+  EXPECT_EQ(node("-2147483648").small_integer(), std::numeric_limits<int>::min());
+  EXPECT_EQ(refusal("-1", [](Node n) { n.count(); }), "f: /: found -1, expected an integer >= 0");
+  EXPECT_EQ(refusal("1.0", [](Node n) { n.count(); }), "f: /: found 1.0, expected an integer");
+  for (const char* bad : {"-1", "1.5", "18446744073709551616"})
+    EXPECT_TRUE(
+        says(refusal(bad, [](Node n) { n.unsigned_integer(); }), {"expected an integer >= 0 of 64 bits"}))
+        << bad;
+  for (const char* bad : {"2147483648", "-2147483649"})
+    EXPECT_EQ(refusal(bad, [](Node n) { n.small_integer(); }),
+              std::string("f: /: found ") + bad + ", expected an integer of 32 bits");
 }
 
 TEST(JsonNode, NumbersAtTheirLimits) {

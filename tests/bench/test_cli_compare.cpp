@@ -131,7 +131,7 @@ TEST_F(CliCompare, ACheckOfNothingFails) {
       "error_m": 1, "error_rad": 1, "total": 1, "evaluations_factor": null}, "entries": []})");
   const ProcessResult run = run_bench({"check", "--baseline=" + empty, runs});
   EXPECT_EQ(run.exit_code, kData) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("expected at least one entry, found none"));
+  EXPECT_THAT(run.err, HasSubstr("found an array of 0, expected at least one entry"));
   // An entry without a record fails, too.
   const std::string baseline = (folder_ / "lm.json").string();
   EXPECT_EQ(

@@ -331,33 +331,37 @@ TEST(BaselineFileErrors, NameFileAndPath) {
     return reading_error(json.dump());
   };
   EXPECT_EQ(with("/entries/1/errors/line_x/x/e_max", "big"),
-            ": /entries/1/errors/line_x/x/e_max: expected a number, found a string");
-  EXPECT_EQ(with("/schema_version", 7), ": /schema_version: expected 1, found 7");
-  EXPECT_EQ(with("/tolerances/error_m", -1), ": /tolerances/error_m: expected a tolerance >= 0, found -1");
+            ": /entries/1/errors/line_x/x/e_max: found \"big\", expected a number");
+  EXPECT_EQ(with("/schema_version", 7), ": /schema_version: found 7, expected 1");
+  EXPECT_EQ(with("/tolerances/error_m", -1), ": /tolerances/error_m: found -1, expected a tolerance >= 0");
   EXPECT_EQ(with("/tolerances/error_m", nullptr),
-            ": /tolerances/error_m: expected a tolerance >= 0, found null");
+            ": /tolerances/error_m: found null, expected a tolerance >= 0");
   EXPECT_EQ(with("/tolerances/evaluations_factor", 0.5),
-            ": /tolerances/evaluations_factor: expected null or a factor >= 1, found 0.5");
+            ": /tolerances/evaluations_factor: found 0.5, expected null or a factor >= 1");
   EXPECT_THAT(with("/tolerances/cost", 1),
-              HasSubstr(": /tolerances: unknown field 'cost', expected one of: cost_rel"));
-  EXPECT_THAT(with("/entries/0/tolerances/x", 1), HasSubstr(": /entries/0/tolerances: unknown field 'x'"));
-  EXPECT_THAT(with("/entries/0/costs", 1), HasSubstr(": /entries/0: unknown field 'costs'"));
+              HasSubstr(": /tolerances: found unknown key \"cost\", expected one of cost_rel"));
+  EXPECT_THAT(with("/entries/0/tolerances/x", 1),
+              HasSubstr(": /entries/0/tolerances: found unknown key \"x\""));
+  EXPECT_THAT(with("/entries/0/costs", 1), HasSubstr(": /entries/0: found unknown key \"costs\""));
   EXPECT_THAT(with("/entries/0/errors/line_x/z", 1),
-              HasSubstr(": /entries/0/errors/line_x: unknown field 'z'"));
-  EXPECT_THAT(with("/entries/0/kind", "guess"), HasSubstr(": /entries/0/kind: expected \"run\", \"eval"));
-  EXPECT_EQ(with("/entries", nlohmann::json::array()), ": /entries: expected at least one entry, found none");
-  EXPECT_EQ(with("/entries/3/problem", 4), ": /entries/3/problem: expected a string, found 4");
-  EXPECT_EQ(with("/entries/1/label", "nominal"), ": /entries/1: a second entry with the label 'nominal'");
+              HasSubstr(": /entries/0/errors/line_x: found unknown key \"z\""));
+  EXPECT_THAT(with("/entries/0/kind", "guess"),
+              HasSubstr(": /entries/0/kind: found \"guess\", expected \"run\", \"eval"));
+  EXPECT_EQ(with("/entries", nlohmann::json::array()),
+            ": /entries: found an array of 0, expected at least one entry");
+  EXPECT_EQ(with("/entries/3/problem", 4), ": /entries/3/problem: found 4, expected a text");
+  EXPECT_EQ(with("/entries/1/label", "nominal"),
+            ": /entries/1: found a second entry with the label \"nominal\", expected one");
   EXPECT_EQ(with("/entries/1/tolerances", {{"cost_relative", 0.5}}), "accepted");
 }
 
 TEST(BaselineFileErrors, BrokenFiles) {
   EXPECT_THAT(reading_error("{\n\"schema_version\": 1,\n oops}"), HasSubstr(":3: broken JSON: syntax error"));
   EXPECT_THAT(reading_error(""), HasSubstr(":1: broken JSON: syntax error"));
-  EXPECT_EQ(reading_error("[]"), ": /: expected an object, found a list");
-  EXPECT_EQ(reading_error("{\"schema_version\": 1}"), ": /: missing field 'tolerances'");
+  EXPECT_EQ(reading_error("[]"), ": /: found an array of 0, expected an object");
+  EXPECT_EQ(reading_error("{\"schema_version\": 1}"), ": /: found no key \"tolerances\", expected it");
   EXPECT_THAT(reading_error(R"({"schema_version": 1, "tolerances": {"cost_relative": 0}, "entries": []})"),
-              HasSubstr(": /tolerances: missing field 'error_m'"));
+              HasSubstr(": /tolerances: found no key \"error_m\""));
   EXPECT_THAT([] { read_baseline("/no/such.json"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("/no/such.json: cannot be read")));
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/json_node.hpp"
 #include "reports/figures/decimate.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
@@ -180,7 +181,7 @@ TEST_F(StoredTracks, ComplaintsNameTheFileAndWhatWasExpected) {
   write("1.npy", whole.substr(0, whole.size() - 8));
   EXPECT_THAT(complaint(), HasSubstr("1.npy: 4792 bytes of data, expected 4800"));
   write("tracks.json", "{\"schema_version\": 2}");
-  EXPECT_THAT(complaint(), HasSubstr("tracks.json: /schema_version: expected 1"));
+  EXPECT_THAT(complaint(), HasSubstr("tracks.json: /schema_version: found 2, expected 1"));
   write("tracks.json", "{");
   EXPECT_THAT(complaint(), HasSubstr("tracks.json:1: broken JSON"));
 }
@@ -344,7 +345,7 @@ TEST(FusionRecord, RowsComeBack) {
   row.sensors = {{"camera", 10, 1, 2, 2.9, 3, 2.5, 3.5}, {"gyro.z", 20, 0, 0, 1.1, 1, 0.9, 1.1}};
   RunRecord record;
   put_fusion_row(row, record);
-  const FusionRow back = fusion_row(record_from_json(to_json(record)));
+  const FusionRow back = fusion_row(record_from(JsonNode::parse(to_json_line(record), "f")));
   EXPECT_TRUE(back.filtered);
   EXPECT_EQ(back.label, row.label);
   EXPECT_EQ(back.verdict, row.verdict);
