@@ -37,6 +37,8 @@ class JsonNode {
   // One document of a file that has many: the one that is its line `line`.
   static JsonNode parse_line(std::string_view text, const std::filesystem::path& file, std::size_t line);
 
+  bool is_object() const;
+  bool is_array() const;
   bool has(const std::string& key) const;
   // The member; missing or not an object: DataError.
   JsonNode at(const std::string& key) const;

@@ -12,23 +12,9 @@
 #include "base/files.hpp"
 #include "base/stop.hpp"
 #include "datasets/recording.hpp"
+#include "datasets/robots/robot.hpp"
 
 namespace odobench {
-
-// One robot parameter as the set states it; SI units.
-struct RobotParameter {
-  std::string name;
-  std::string unit;
-  double nominal = 0;
-  double lower = 0;
-  double upper = 0;
-};
-
-struct Robot {
-  std::string name;
-  std::string kinematics;                  // e.g. "4wis4wid"
-  std::vector<RobotParameter> parameters;  // for 4wis4wid: a1..a4, b1..b4, r1..r4
-};
 
 struct Trajectory {
   std::string name;         // key that recordings refer to

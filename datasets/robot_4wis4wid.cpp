@@ -9,7 +9,7 @@ namespace odobench {
 Robot robot_4wis4wid() {
   constexpr std::array<double, kWheelCount> a = {kHalfTrack, -kHalfTrack, -kHalfTrack, kHalfTrack};
   constexpr std::array<double, kWheelCount> b = {kHalfTrack, kHalfTrack, -kHalfTrack, -kHalfTrack};
-  Robot robot{"4wis4wid", "4wis4wid", {}};
+  Robot robot;
   const auto add = [&robot](char letter, std::size_t wheel, double nominal) {
     const double x = nominal * 0.95, y = nominal * 1.05;
     robot.parameters.push_back(
@@ -18,7 +18,7 @@ Robot robot_4wis4wid() {
   for (std::size_t i = 0; i < kWheelCount; ++i) add('a', i, a[i]);
   for (std::size_t i = 0; i < kWheelCount; ++i) add('b', i, b[i]);
   for (std::size_t i = 0; i < kWheelCount; ++i) add('r', i, kWheelRadius);
-  return robot;
+  return robot_of_class("4wis4wid", robot.parameters);
 }
 
 Recording recording_4wis4wid() {

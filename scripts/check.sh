@@ -29,10 +29,11 @@ mapfile -t build_files < <(find CMakeLists.txt CMakePresets.json cmake .ci scrip
 # lie in it, `folder/` those of its sub-folders, too. The longest name that fits a file decides; base may be included by all.
 arrows='
 base
-datasets
+datasets                      datasets/robots
 datasets/csv
 datasets/entropy              datasets/csv
-datasets/native               datasets
+datasets/native               datasets datasets/robots
+datasets/robots
 datasets/import               datasets datasets/csv
 reports/records
 reports/statistics            reports/records
@@ -43,13 +44,13 @@ reports/kinds                 reports/records reports/statistics reports/render 
 reports/kinds/fusion          reports/records reports/statistics reports/render reports/figures reports/kinds/calibration
 reports/page                  reports/
 problems
-problems/calibration          problems datasets/recording.hpp
+problems/calibration          problems problems/robots datasets datasets/robots
 problems/classic              problems
 problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems
-problems/fusion               problems problems/kalman problems/calibration datasets/recording.hpp
-problems/information          problems problems/calibration datasets/recording.hpp
-problems/robots               datasets
+problems/fusion               problems problems/kalman problems/calibration problems/robots datasets
+problems/information          problems problems/calibration problems/robots datasets
+problems/robots               datasets datasets/robots
 problems/simulation           datasets/
 problems/simulation/motors    problems/simulation
 solvers                       problems/problem.hpp problems/instruction_set.hpp

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/range.hpp"
+
 namespace odobench {
 namespace {
 
@@ -43,13 +45,20 @@ std::string column_name(const Signal& signal, int schema) {
 std::optional<ColumnFault> find_fault(const Recording& recording, int schema) {
   std::optional<ColumnFault> fault = find_stamp_fault(recording.time_us);
   if (!fault) fault = find_reference_fault(recording);
+  // All stamps without a reference leave nothing behind, not even a list.
+  if (!fault && schema > 1 && recording.reference.sample.empty() && recording.reference.x.empty())
+    fault = ColumnFault{"x", {}, "found no reference at any stamp, expected one at least"};
   const std::size_t references =
       recording.reference.sample.empty() ? recording.size() : recording.reference.sample.size();
   std::size_t column = 0;
   for_each_value_column(
       recording, schema, [&](const std::string& name, const char*, const std::vector<double>& values) {
         if (fault) return;
-        const std::size_t expected = column++ < 3 ? references : recording.size();
+        const bool of_reference = column++ < 3;
+        const std::size_t expected = of_reference ? references : recording.size();
+        const auto stamp = [&](std::size_t k) {
+          return of_reference && !recording.reference.sample.empty() ? recording.reference.sample[k] : k;
+        };
         if (values.size() != expected) {
           fault =
               ColumnFault{name,
@@ -60,11 +69,40 @@ std::optional<ColumnFault> find_fault(const Recording& recording, int schema) {
         }
         for (std::size_t k = 0; k < values.size(); ++k)
           if (!std::isfinite(values[k])) {
-            fault = ColumnFault{name, k, fmt::format("found {}, expected a finite number", values[k])};
+            fault = ColumnFault{name, stamp(k), fmt::format("found {}, expected a finite number", values[k])};
             return;
           }
       });
   return fault;
+}
+
+Recording with_reference_everywhere(const Recording& recording) {
+  Recording whole = recording;
+  const Reference& some = recording.reference;
+  if (some.sample.empty()) return whole;
+  const std::vector<double> none(recording.size(), kNotANumber);
+  whole.reference = {{}, none, none, none};
+  for (std::size_t i = 0; i < some.sample.size(); ++i) {
+    whole.reference.x[some.sample[i]] = some.x[i];
+    whole.reference.y[some.sample[i]] = some.y[i];
+    whole.reference.theta[some.sample[i]] = some.theta[i];
+  }
+  return whole;
+}
+
+void drop_missing_reference(Recording& recording) {
+  Reference& r = recording.reference;
+  if (r.x.size() != recording.size() || r.y.size() != recording.size() || r.theta.size() != recording.size())
+    return;
+  Reference some;
+  for (std::size_t k = 0; k < recording.size(); ++k) {
+    if (std::isnan(r.x[k]) && std::isnan(r.y[k]) && std::isnan(r.theta[k])) continue;
+    some.sample.push_back(k);
+    some.x.push_back(r.x[k]);
+    some.y.push_back(r.y[k]);
+    some.theta.push_back(r.theta[k]);
+  }
+  if (some.sample.size() < recording.size()) r = std::move(some);
 }
 
 }  // namespace odobench

@@ -40,4 +40,10 @@ struct ColumnFault {
 // reference at some stamps only: at increasing stamps of the recording, at least one.
 std::optional<ColumnFault> find_fault(const Recording& recording, int schema);
 
+// Stamps without a reference are not-a-number in x, y and theta, in files and on the way from and to them.
+// The first makes them of the reference's list of stamps; the second makes the list where all three are
+// not-a-number at some stamp (one alone is left for find_fault()).
+Recording with_reference_everywhere(const Recording& recording);
+void drop_missing_reference(Recording& recording);
+
 }  // namespace odobench

@@ -4,6 +4,8 @@
 namespace odobench {
 
 inline constexpr const char* kDatasetSchema = "odobench-dataset";
-inline constexpr int kDatasetSchemaVersion = 1;
+// 1: the thesis' robot, every sample with a reference. 2: any robot, signals by name, a reference where there
+// is one.
+inline constexpr int kDatasetSchemaVersion = 2;
 
 }  // namespace odobench

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "base/files.hpp"
 #include "base/json_node.hpp"
@@ -11,6 +13,8 @@
 #include "datasets/native/columns.hpp"
 #include "datasets/native/dataset_format.hpp"
 #include "datasets/native/recording_file.hpp"
+#include "datasets/native/robot_json.hpp"
+#include "datasets/native/signal_format.hpp"
 #include "datasets/native/validate.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
@@ -18,27 +22,50 @@ namespace odobench {
 namespace fs = std::filesystem;
 namespace {
 
-void check_schema(const JsonNode& root) {
+// Which schema the set has.
+int check_schema(const JsonNode& root) {
   const JsonNode schema = root.at("schema");
   if (schema.text() != kDatasetSchema)
     schema.fail('"' + schema.text() + '"', fmt::format("\"{}\"", kDatasetSchema));
   const JsonNode version = root.at("schema_version");
-  if (version.integer() != kDatasetSchemaVersion)
+  if (version.integer() < 1 || version.integer() > kDatasetSchemaVersion)
     version.fail(fmt::format("version {}", version.integer()),
-                 fmt::format("version {}", kDatasetSchemaVersion));
-  root.allow_only({"schema", "schema_version", "name", "description", "robot", "trajectories", "recordings",
-                   "known_parameters", "provenance", "notes"});
+                 fmt::format("version 1 or {}", kDatasetSchemaVersion));
+  if (version.integer() == 1)
+    root.allow_only({"schema", "schema_version", "name", "description", "robot", "trajectories", "recordings",
+                     "known_parameters", "provenance", "notes"});
+  else
+    root.allow_only({"schema", "schema_version", "name", "description", "robot", "signals", "trajectories",
+                     "recordings", "known_parameters", "provenance", "notes"});
+  return static_cast<int>(version.integer());
 }
 
-Robot read_robot(const JsonNode& node) {
-  node.allow_only({"name", "kinematics", "parameters"});
-  Robot robot{node.at("name").text(), node.at("kinematics").text(), {}};
-  for (const JsonNode& p : node.at("parameters").elements()) {
-    p.allow_only({"name", "unit", "nominal", "lower", "upper"});
-    robot.parameters.push_back({p.at("name").text(), p.at("unit").text(), p.at("nominal").number(),
-                                p.at("lower").number(), p.at("upper").number()});
+// What a set says about the columns of its recordings.
+struct ColumnsFormat {
+  int schema = 1;
+  std::vector<SignalFormat> signals;  // of schema 2
+
+  // A recording without samples that has the signals.
+  Recording recording() const {
+    if (schema == 1) return recording_4wis4wid();
+    Recording empty;
+    for (const SignalFormat& format : signals)
+      empty.signals.push_back({format.name, format.signal_kind(), {}});
+    return empty;
   }
-  return robot;
+};
+
+ColumnsFormat read_columns_format(const JsonNode& root, int schema) {
+  ColumnsFormat format{schema, {}};
+  if (schema == 1) return format;
+  std::set<std::string> names = {"time_us", "x", "y", "theta"};
+  for (const JsonNode& signal : root.at("signals").elements()) {
+    format.signals.push_back(read_signal_format(signal));
+    const std::string& name = format.signals.back().name;
+    if (name.empty() || !names.insert(name).second)
+      signal.at("name").fail('"' + shown(name) + '"', "a name that no other column has");
+  }
+  return format;
 }
 
 Trajectory read_trajectory(const JsonNode& node) {
@@ -72,9 +99,9 @@ Provenance read_provenance(const JsonNode& node) {
 }
 
 // Id, trajectory and repetition only: the set as a whole is checked before any recording is opened.
-Recording read_recording_head(const JsonNode& node) {
+Recording read_recording_head(const JsonNode& node, const ColumnsFormat& format) {
   node.allow_only({"id", "trajectory", "repetition", "samples", "file", "sha256", "columns"});
-  Recording recording = recording_4wis4wid();
+  Recording recording = format.recording();
   recording.id = node.at("id").text();
   recording.trajectory = node.at("trajectory").text();
   const std::int64_t repetition = node.at("repetition").integer();
@@ -87,20 +114,23 @@ Recording read_recording_head(const JsonNode& node) {
   return recording;
 }
 
-void read_inline_columns(const JsonNode& node, Recording& recording) {
+void read_inline_columns(const JsonNode& node, const ColumnsFormat& format, Recording& recording) {
   if (node.has("sha256")) node.fail("\"sha256\" beside inline columns", "it beside \"file\" only");
   const JsonNode columns = node.at("columns");
   recording.time_us = columns.at("time_us").integers();
-  std::size_t names = 1;
-  for_each_value_column(recording, 1, [&](const std::string& name, const char*, std::vector<double>& values) {
-    values = columns.at(name).numbers();
-    ++names;
-  });
-  if (columns.keys().size() != names) {
-    columns.allow_only({"time_us", "x", "y", "theta", "steering_1", "steering_2", "steering_3", "steering_4",
-                        "wheel_speed_1", "wheel_speed_2", "wheel_speed_3", "wheel_speed_4"});
-  }
-  if (const auto fault = find_fault(recording, 1)) {
+  std::vector<std::string> names = {"time_us"};
+  for_each_value_column(recording, format.schema,
+                        [&](const std::string& name, const char*, std::vector<double>& values) {
+                          const bool of_reference = names.size() <= 3;
+                          values = format.schema > 1 && of_reference ? columns.at(name).stored_numbers()
+                                                                     : columns.at(name).numbers();
+                          names.push_back(name);
+                        });
+  for (const std::string& key : columns.keys())
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      columns.fail(fmt::format("unknown key \"{}\"", shown(key)), fmt::format("{}", fmt::join(names, ", ")));
+  if (format.schema > 1) drop_missing_reference(recording);
+  if (const auto fault = find_fault(recording, format.schema)) {
     const JsonNode column = columns.at(fault->column);
     throw DataError(fmt::format("{}: {}{}: {}", column.file(), column.path(),
                                 fault->sample ? fmt::format("/{}", *fault->sample) : "", fault->what));
@@ -108,6 +138,8 @@ void read_inline_columns(const JsonNode& node, Recording& recording) {
   if (node.has("samples") && node.at("samples").integer() != static_cast<std::int64_t>(recording.size()))
     node.at("samples").fail(fmt::format("{}", node.at("samples").integer()),
                             fmt::format("{} as in time_us", recording.size()));
+  for (std::size_t i = 0; i < format.signals.size(); ++i)
+    convert(format.signals[i], recording.signals[i].values);
 }
 
 // FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither
@@ -131,28 +163,35 @@ fs::path file_below(const fs::path& folder, const JsonNode& node) {
   return file;
 }
 
-void read_recording_file(const JsonNode& node, const fs::path& folder, Recording& recording) {
+void read_recording_file(const JsonNode& node, const fs::path& folder, const ColumnsFormat& format,
+                         Recording& recording) {
+  for (const SignalFormat& signal : format.signals)
+    if (!signal.plain())
+      node.at("file").fail(fmt::format("a recording file beside the signal '{}' in {}", shown(signal.name),
+                                       shown(signal.unit)),
+                           "speeds in rad/s, increments and angles in rad, or inline columns");
   const fs::path file = file_below(folder, node.at("file"));
   const std::int64_t samples = node.at("samples").integer();
   if (samples < 2) node.at("samples").fail(fmt::format("{} samples", samples), "at least 2");
   const std::string sum = node.at("sha256").text();
   if (!is_sha256(sum)) node.at("sha256").fail('"' + sum + '"', "64 lower-case hexadecimal digits");
-  decode_recording(read_file(file), {file.string(), static_cast<std::size_t>(samples), sum}, recording);
+  decode_recording(read_file(file), {file.string(), static_cast<std::size_t>(samples), sum, format.schema},
+                   recording);
 }
 
 }  // namespace
 
 Dataset load_dataset(const fs::path& set_json) {
   const JsonNode root = JsonNode::read(set_json);
-  check_schema(root);
+  const int schema = check_schema(root);
   Dataset d;
   d.name = root.at("name").text();
   d.description = root.text_or_empty("description");
-  d.robot = read_robot(root.at("robot"));
-  validate_robot(d.robot, set_json.string());
+  d.robot = read_robot(root.at("robot"), schema);
+  const ColumnsFormat format = read_columns_format(root, schema);
   for (const JsonNode& t : root.at("trajectories").elements()) d.trajectories.push_back(read_trajectory(t));
   const std::vector<JsonNode> recordings = root.at("recordings").elements();
-  for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r));
+  for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r, format));
   if (root.has("known_parameters"))
     for (const JsonNode& k : root.at("known_parameters").elements())
       d.known_parameters.push_back(read_known_parameters(k, d.robot));
@@ -163,9 +202,9 @@ Dataset load_dataset(const fs::path& set_json) {
 
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].has("columns"))
-      read_inline_columns(recordings[i], d.recordings[i]);
+      read_inline_columns(recordings[i], format, d.recordings[i]);
     else
-      read_recording_file(recordings[i], set_json.parent_path(), d.recordings[i]);
+      read_recording_file(recordings[i], set_json.parent_path(), format, d.recordings[i]);
   }
   return d;
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/files.hpp"
@@ -8,7 +9,9 @@
 #include "datasets/native/columns.hpp"
 #include "datasets/native/dataset_format.hpp"
 #include "datasets/native/recording_file.hpp"
+#include "datasets/native/robot_json.hpp"
 #include "datasets/native/validate.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
@@ -52,14 +55,6 @@ std::string pretty(const Json& value, std::size_t indent) {
   return text + "\n" + std::string(indent, ' ') + (value.is_object() ? '}' : ']');
 }
 
-Json robot_json(const Robot& robot) {
-  Json parameters = Json::array();
-  for (const RobotParameter& p : robot.parameters)
-    parameters.push_back(
-        {{"name", p.name}, {"unit", p.unit}, {"nominal", p.nominal}, {"lower", p.lower}, {"upper", p.upper}});
-  return {{"name", robot.name}, {"kinematics", robot.kinematics}, {"parameters", parameters}};
-}
-
 Json known_parameters_json(const Dataset& d) {
   Json all = Json::array();
   for (const NamedParameters& known : d.known_parameters) {
@@ -81,17 +76,50 @@ Json recording_head(const Recording& r) {
   return {{"id", r.id}, {"trajectory", r.trajectory}, {"repetition", r.repetition}, {"samples", r.size()}};
 }
 
-Json inline_columns(const Recording& r) {
+Json inline_columns(const Recording& sparse, int schema) {
+  const Recording r = with_reference_everywhere(sparse);
   Json columns = {{"time_us", r.time_us}};
-  for_each_value_column(
-      r, 1, [&](const std::string& name, const char*, const std::vector<double>& v) { columns[name] = v; });
+  // A stamp without a reference is null, which is how the library writes what is not a number.
+  for_each_value_column(r, schema, [&](const std::string& name, const char*, const std::vector<double>& v) {
+    columns[name] = v;
+  });
   return columns;
 }
 
-void check(const Dataset& d, const std::string& file) {
+int schema_of(const Dataset& d) {
+  const std::vector<Signal> known = recording_4wis4wid().signals;
+  const auto as_before = [&](const Recording& r) {
+    return r.reference.sample.empty() &&
+           std::equal(r.signals.begin(), r.signals.end(), known.begin(), known.end(),
+                      [](const Signal& a, const Signal& b) { return a.name == b.name && a.kind == b.kind; });
+  };
+  return fits_schema_1(d.robot) && std::all_of(d.recordings.begin(), d.recordings.end(), as_before)
+             ? 1
+             : kDatasetSchemaVersion;
+}
+
+Json signals_json(const Dataset& d) {
+  Json signals = Json::array();
+  for (const Signal& signal : d.recordings.front().signals)
+    signals.push_back(
+        {{"name", signal.name}, {"kind", name_of(signal.kind)}, {"unit", unit_of(signal.kind)}});
+  return signals;
+}
+
+void check_signals(const Dataset& d, const std::string& file) {
+  const std::vector<Signal>& first = d.recordings.front().signals;
+  for (const Recording& r : d.recordings)
+    if (!std::equal(r.signals.begin(), r.signals.end(), first.begin(), first.end(),
+                    [](const Signal& a, const Signal& b) { return a.name == b.name && a.kind == b.kind; }))
+      throw DataError(fmt::format("{}: recording '{}' has other signals than '{}', expected the same in all",
+                                  file, r.id, d.recordings.front().id));
+}
+
+void check(const Dataset& d, const std::string& file, int schema) {
   validate_dataset(d, file);
+  check_signals(d, file);
   for (std::size_t i = 0; i < d.recordings.size(); ++i)
-    if (const auto fault = find_fault(d.recordings[i], 1))
+    if (const auto fault = find_fault(d.recordings[i], schema))
       throw DataError(
           fmt::format("{}: /recordings/{} ({}): {}{}: {}", file, i, d.recordings[i].id, fault->column,
                       fault->sample ? fmt::format(", sample {}", *fault->sample) : "", fault->what));
@@ -110,7 +138,9 @@ std::vector<fs::path> save_dataset(const Dataset& d, const fs::path& set_json, b
 
 void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& files, bool inline_recordings,
                  const Stop& stop) {
-  check(d, set_json.string());
+  if (d.recordings.empty()) validate_dataset(d, set_json.string());  // which refuses it
+  const int schema = schema_of(d);
+  check(d, set_json.string(), schema);
   const std::string folder = set_json.stem().string() + "_recordings";
   if (!inline_recordings) require_own_folder(set_json.parent_path() / folder);
   Json recordings = Json::array();
@@ -118,10 +148,10 @@ void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& fi
     stop.check();
     Json entry = recording_head(r);
     if (inline_recordings) {
-      entry["columns"] = inline_columns(r);
+      entry["columns"] = inline_columns(r, schema);
     } else {
       const std::string name = folder + "/" + r.id + ".rec";
-      const std::string bytes = encode_recording(r);
+      const std::string bytes = encode_recording(r, schema);
       entry["file"] = name;
       entry["sha256"] = sha256(bytes);
       files.add(set_json.parent_path() / name, bytes);
@@ -131,16 +161,17 @@ void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& fi
   Json trajectories = Json::array();
   for (const Trajectory& t : d.trajectories)
     trajectories.push_back({{"name", t.name}, {"description", t.description}});
-  const Json root = {{"schema", kDatasetSchema},
-                     {"schema_version", kDatasetSchemaVersion},
-                     {"name", d.name},
-                     {"description", d.description},
-                     {"robot", robot_json(d.robot)},
-                     {"trajectories", std::move(trajectories)},
-                     {"known_parameters", known_parameters_json(d)},
-                     {"provenance", provenance_json(d.provenance)},
-                     {"notes", d.notes},
-                     {"recordings", std::move(recordings)}};
+  Json root = {{"schema", kDatasetSchema},
+               {"schema_version", schema},
+               {"name", d.name},
+               {"description", d.description},
+               {"robot", robot_json(d.robot, schema)}};
+  if (schema > 1) root["signals"] = signals_json(d);
+  root["trajectories"] = std::move(trajectories);
+  root["known_parameters"] = known_parameters_json(d);
+  root["provenance"] = provenance_json(d.provenance);
+  root["notes"] = d.notes;
+  root["recordings"] = std::move(recordings);
   std::string text;
   try {
     text = pretty(root, 0) + "\n";

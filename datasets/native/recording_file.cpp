@@ -44,13 +44,13 @@ void extract(std::string_view bytes, std::vector<T>& values) {
 
 // Ids and column names need no escapes: validate_dataset() restricts ids to letters, digits, '_', '-' and
 // '.'.
-std::string header(const Recording& recording) {
+std::string header(const Recording& recording, int schema) {
   std::string line =
       fmt::format(R"({{"format": "{}", "version": {}, "id": "{}", "samples": {}, "columns": [)",
-                  kRecordingFormat, kRecordingFormatVersion, recording.id, recording.size());
+                  kRecordingFormat, schema, recording.id, recording.size());
   line += R"({"name": "time_us", "unit": "us", "type": "int64"})";
   for_each_value_column(
-      recording, 1, [&](const std::string& name, const char* unit, const std::vector<double>&) {
+      recording, schema, [&](const std::string& name, const char* unit, const std::vector<double>&) {
         line += fmt::format(R"(, {{"name": "{}", "unit": "{}", "type": "float64"}})", name, unit);
       });
   line += "]}";
@@ -58,7 +58,7 @@ std::string header(const Recording& recording) {
   return line + "\n";
 }
 
-void check_columns(const JsonNode& columns, const Recording& recording) {
+void check_columns(const JsonNode& columns, const Recording& recording, int schema) {
   const std::vector<JsonNode> found = columns.elements();
   if (found.size() != 1 + value_columns(recording))
     columns.fail(fmt::format("{} columns", found.size()), fmt::format("{}", 1 + value_columns(recording)));
@@ -75,7 +75,7 @@ void check_columns(const JsonNode& columns, const Recording& recording) {
     member("type", type);
   };
   check("time_us", "us", "int64");
-  for_each_value_column(recording, 1,
+  for_each_value_column(recording, schema,
                         [&](const std::string& name, const char* unit, const std::vector<double>&) {
                           check(name, unit, "float64");
                         });
@@ -93,9 +93,8 @@ std::size_t check_header(std::string_view bytes, const ExpectedRecording& expect
   if (format.text() != kRecordingFormat)
     format.fail('"' + format.text() + '"', fmt::format("\"{}\"", kRecordingFormat));
   const JsonNode version = root.at("version");
-  if (version.integer() != kRecordingFormatVersion)
-    version.fail(fmt::format("version {}", version.integer()),
-                 fmt::format("version {}", kRecordingFormatVersion));
+  if (version.integer() != expected.schema)
+    version.fail(fmt::format("version {}", version.integer()), fmt::format("version {}", expected.schema));
   root.allow_only({"format", "version", "id", "samples", "columns"});
   if (root.at("id").text() != recording.id)
     root.at("id").fail('"' + root.at("id").text() + '"', '"' + recording.id + '"');
@@ -103,18 +102,20 @@ std::size_t check_header(std::string_view bytes, const ExpectedRecording& expect
   if (samples.integer() < 0 || static_cast<std::size_t>(samples.integer()) != expected.samples)
     samples.fail(fmt::format("{} samples", samples.integer()),
                  fmt::format("{} as in the set", expected.samples));
-  check_columns(root.at("columns"), recording);
+  check_columns(root.at("columns"), recording, expected.schema);
   return newline + 1;
 }
 
 }  // namespace
 
-std::string encode_recording(const Recording& recording) {
-  std::string bytes = header(recording);
+std::string encode_recording(const Recording& sparse, int schema) {
+  const Recording recording = with_reference_everywhere(sparse);
+  std::string bytes = header(recording, schema);
   bytes.reserve(bytes.size() + (1 + value_columns(recording)) * kEntryBytes * recording.size());
   append(bytes, recording.time_us);
   for_each_value_column(
-      recording, 1, [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
+      recording, schema,
+      [&](const std::string&, const char*, const std::vector<double>& v) { append(bytes, v); });
   return bytes;
 }
 
@@ -135,17 +136,20 @@ void decode_recording(std::string_view bytes, const ExpectedRecording& expected,
   const std::size_t column = expected.samples * kEntryBytes;
   std::size_t offset = start;
   extract(bytes.substr(offset, column), recording.time_us);
-  for_each_value_column(recording, 1, [&](const std::string&, const char*, std::vector<double>& values) {
-    offset += column;
-    extract(bytes.substr(offset, column), values);
-  });
-  const std::optional<ColumnFault> fault = find_fault(recording, 1);
+  for_each_value_column(recording, expected.schema,
+                        [&](const std::string&, const char*, std::vector<double>& values) {
+                          offset += column;
+                          extract(bytes.substr(offset, column), values);
+                        });
+  if (expected.schema > 1) drop_missing_reference(recording);
+  const std::optional<ColumnFault> fault = find_fault(recording, expected.schema);
   if (!fault) return;
   std::size_t index = 0, next = 1;
-  for_each_value_column(recording, 1, [&](const std::string& name, const char*, const std::vector<double>&) {
-    if (name == fault->column) index = next;
-    ++next;
-  });
+  for_each_value_column(recording, expected.schema,
+                        [&](const std::string& name, const char*, const std::vector<double>&) {
+                          if (name == fault->column) index = next;
+                          ++next;
+                        });
   const std::size_t byte = start + index * column + fault->sample.value_or(0) * kEntryBytes;
   throw DataError(fmt::format("{}: byte {} ({}, sample {}): {}", expected.file, byte, fault->column,
                               fault->sample.value_or(0), fault->what));

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/angle.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/structure.hpp"
 
@@ -22,6 +23,14 @@ Vector nominal_values(const std::vector<ParameterInfo>& parameters) {
   Vector z(static_cast<Eigen::Index>(parameters.size()));
   for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = parameters[static_cast<std::size_t>(i)].nominal;
   return z;
+}
+
+void check_recordings(const std::vector<Recording>& recordings) {
+  if (recordings.empty()) throw std::invalid_argument("calibration: no recordings, expected at least one");
+  for (const Recording& r : recordings)
+    if (r.size() < 2)
+      throw std::invalid_argument(
+          fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
 }
 
 void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recording>& recordings) {
@@ -40,11 +49,20 @@ void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recor
         parameters[i + 4].upper >= 0)
       throw std::invalid_argument(
           fmt::format("calibration: the box lets wheel {} stand at the origin (a = b = 0)", i + 1));
-  if (recordings.empty()) throw std::invalid_argument("calibration: no recordings, expected at least one");
-  for (const Recording& r : recordings)
-    if (r.size() < 2)
-      throw std::invalid_argument(
-          fmt::format("calibration: recording '{}' has {} samples, expected at least 2", r.id, r.size()));
+  check_recordings(recordings);
+}
+
+// The structured form knows one robot, by its class and names, one rule and one cost.
+bool structured_form_fits(const Robot& robot, const CalibrationOptions& options) {
+  if (robot.kinematics != "4wis4wid" || robot.table.rule != TwistRule::Mean || !options.as_in_thesis())
+    return false;
+  return robot.parameters.size() == static_cast<std::size_t>(kCalibrationParameters);
+}
+
+void add_mount(std::vector<ParameterInfo>& parameters) {
+  parameters.push_back({"mount_x", "m", 0, -0.25, 0.25});
+  parameters.push_back({"mount_y", "m", 0, -0.25, 0.25});
+  parameters.push_back({"mount_yaw", "rad", 0, -0.2, 0.2});
 }
 
 Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::size_t k) {
@@ -57,15 +75,39 @@ Eigen::Vector3d pose_error(const PoseTrack& q, const Recording& recording, std::
 CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
                                        std::vector<Recording> recordings, InstructionSet kernel)
     : parameters_(std::move(parameters)), recordings_(std::move(recordings)), kernel_(kernel) {
+  options_.from_origin = true;
   check(parameters_, recordings_);
-  for (const Recording& r : recordings_)
-    for (std::size_t k = 0; k < r.size(); ++k)
-      exact_floor_ += static_cast<double>(k) *
-                      (r.reference.x[k] * r.reference.x[k] + r.reference.y[k] * r.reference.y[k] +
-                       r.reference.theta[k] * r.reference.theta[k]);
-  constexpr double kUnit = 2 * std::numeric_limits<double>::epsilon();
-  exact_floor_ *= kUnit * kUnit;
+  set_rounding_floor();
   structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
+}
+
+CalibrationProblem::CalibrationProblem(const Robot& robot, std::vector<Recording> recordings,
+                                       const CalibrationOptions& options, InstructionSet kernel)
+    : recordings_(std::move(recordings)), options_(options), kernel_(kernel) {
+  for (const RobotParameter& p : robot.parameters)
+    parameters_.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
+  if (structured_form_fits(robot, options)) {
+    check(parameters_, recordings_);
+    structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
+  } else {
+    if (options.mount) add_mount(parameters_);
+    validate(parameters_);
+    check_recordings(recordings_);
+    general_ = std::make_unique<WheeledForm>(robots::WheeledRobot(robot.table), recordings_, options);
+  }
+  set_rounding_floor();
+}
+
+void CalibrationProblem::set_rounding_floor() {
+  for (const Recording& r : recordings_)
+    for (std::size_t i = 0; i < r.reference.x.size(); ++i) {
+      const std::size_t k = r.reference.sample.empty() ? i : r.reference.sample[i];
+      exact_floor_ += static_cast<double>(k) *
+                      (r.reference.x[i] * r.reference.x[i] + r.reference.y[i] * r.reference.y[i] +
+                       r.reference.theta[i] * r.reference.theta[i]);
+    }
+  constexpr double kUnit = 2 * std::numeric_limits<double>::epsilon();
+  exact_floor_ *= kUnit * kUnit * std::max(options_.position_weight, options_.heading_weight);
 }
 
 CalibrationProblem::~CalibrationProblem() = default;
@@ -73,6 +115,7 @@ CalibrationProblem::CalibrationProblem(CalibrationProblem&&) noexcept = default;
 CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept = default;
 
 double CalibrationProblem::cost(const ConstVectorRef& z) const {
+  if (general_) return general_->cost(z);
   return std::max(structure_->cost(z), 0.0);  // not-a-number stays
 }
 
@@ -81,26 +124,41 @@ double CalibrationProblem::rounding_floor(const ConstVectorRef& z) const {
 }
 
 void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
+  if (general_) {
+    for (Eigen::Index k = 0; k < candidates.cols(); ++k) costs[k] = general_->cost(candidates.col(k));
+    return;
+  }
   structure_->batch_cost(candidates, costs);
   for (double& cost : costs) cost = std::max(cost, 0.0);
 }
 
 void CalibrationProblem::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
+  if (general_) return general_->normal_equations(z, out);
   structure_->normal_equations(z, out);
   out.cost = std::max(out.cost, 0.0);
 }
 
 Eigen::Index CalibrationProblem::residual_count() const {
+  if (general_) return general_->residual_count();
   Eigen::Index count = 0;
   for (const Recording& r : recordings_) count += 3 * (static_cast<Eigen::Index>(r.size()) - 1);
   return count;
 }
 
 PoseTrack CalibrationProblem::integrate(std::size_t recording, const ConstVectorRef& z) const {
-  return direct::integrate(recordings_.at(recording), z);
+  if (!general_) return direct::integrate(recordings_.at(recording), z);
+  const Matrix track = general_->track(recording, z);
+  PoseTrack q;
+  for (Eigen::Index k = 0; k < track.cols(); ++k) {
+    q.x.push_back(track(0, k));
+    q.y.push_back(track(1, k));
+    q.theta.push_back(track(2, k));
+  }
+  return q;
 }
 
 void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
+  if (general_) return general_->residuals(z, r);
   Eigen::Index row = 0;
   for (const Recording& recording : recordings_) {
     const PoseTrack q = direct::integrate(recording, z);
@@ -110,6 +168,7 @@ void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
 }
 
 void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const {
+  if (general_) return general_->residuals_and_jacobian(z, r, j);
   const LinearMatrix chain = linear_jacobian(z);
   Eigen::Index row = 0;
   for (const Recording& recording : recordings_) {
@@ -141,13 +200,19 @@ void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorR
 
 std::vector<MaxErrors> CalibrationProblem::max_errors(const ConstVectorRef& z) const {
   std::vector<MaxErrors> list;
-  for (const Recording& recording : recordings_) {
-    const PoseTrack q = direct::integrate(recording, z);
+  for (std::size_t i = 0; i < recordings_.size(); ++i) {
+    const Recording& recording = recordings_[i];
+    const Reference& reference = recording.reference;
+    const PoseTrack q = integrate(i, z);
     MaxErrors e{recording.id, recording.trajectory, recording.repetition};
-    for (std::size_t k = 0; k < recording.size(); ++k) {
-      e.x = std::max(e.x, std::abs(q.x[k] - recording.reference.x[k]));
-      e.y = std::max(e.y, std::abs(q.y[k] - recording.reference.y[k]));
-      e.theta = std::max(e.theta, std::abs(q.theta[k] - recording.reference.theta[k]));
+    for (std::size_t entry = 0; entry < reference.x.size(); ++entry) {
+      const bool everywhere = reference.sample.empty();
+      const std::size_t k = everywhere ? entry : reference.sample[entry];
+      const double turned = q.theta[k] - reference.theta[entry];
+      e.x = std::max(e.x, std::abs(q.x[k] - reference.x[entry]));
+      e.y = std::max(e.y, std::abs(q.y[k] - reference.y[entry]));
+      // Headings here and there are known up to turns.
+      e.theta = std::max(e.theta, std::abs(everywhere ? turned : wrapped_angle(turned)));
     }
     list.push_back(std::move(e));
   }

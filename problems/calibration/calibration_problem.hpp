@@ -17,6 +17,9 @@
 #include <span>
 
 #include "datasets/recording.hpp"
+#include "datasets/robots/robot.hpp"
+#include "problems/calibration/calibration_options.hpp"
+#include "problems/calibration/wheeled_form.hpp"
 #include "problems/instruction_set.hpp"
 #include "problems/problem.hpp"
 
@@ -43,18 +46,28 @@ PoseTrack integrate(const Recording& recording, const ConstVectorRef& z);
 double cost(std::span<const Recording> recordings, const ConstVectorRef& z);
 }  // namespace direct
 
-// The structured form: with P_i = r_i b_i / (a_i^2+b_i^2) and Q_i = r_i a_i / (a_i^2+b_i^2) the heading is
-// linear in (P, Q) and the body velocity is linear in r, so an evaluation needs no trigonometry of the
-// steering angles, the heading part of J is a constant quadratic form, and the Jacobian is analytic.
-// Evaluates J, residuals (3 per sample k >= 1, order x, y, theta, recording by recording), Jacobian, normal
-// equations in one pass, and batches of candidates. Immutable; every member may be called from several
-// threads.
+// Odometry calibration of a robot from recordings: J, residuals (in the order of the recordings; x, y, theta
+// row by row), Jacobian, normal equations in one pass, and batches of candidates.
+//
+// The thesis' robot with the thesis' cost has a structured form: with P_i = r_i b_i / (a_i^2+b_i^2) and Q_i =
+// r_i a_i / (a_i^2+b_i^2) the heading is linear in (P, Q) and the body velocity is linear in r, so an
+// evaluation needs no trigonometry of the steering angles, the heading part of J is a constant quadratic
+// form, and the Jacobian is analytic. Everything else has the general form of
+// problems/calibration/wheeled_form.hpp, whose Jacobian is analytic, too.
+//
+// Immutable; every member may be called from several threads.
 class CalibrationProblem {
  public:
-  // parameters: the twelve, in the order above. `kernel`: what evaluates the structured form; it decides the
-  // last bits of cost, normal equations and batches. Throws std::invalid_argument on another count, on no
-  // recordings, on a recording with fewer than two samples, or on a kernel that the processor does not have.
+  // The thesis' robot and cost. parameters: the twelve, in the order above. `kernel`: what evaluates the
+  // structured form; it decides the last bits of cost, normal equations and batches. Throws
+  // std::invalid_argument on another count, on no recordings, on a recording with fewer than two samples, or
+  // on a kernel that the processor does not have.
   CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings,
+                     InstructionSet kernel = widest_instruction_set());
+  // Any robot and cost; the structured form where options.as_in_thesis() and the robot is the thesis' with the
+  // mean. With options.mount three parameters more: mount_x, mount_y [m], mount_yaw [rad], within 0.25 m and
+  // 0.2 rad. Throws std::invalid_argument as above, and for what the robot needs and a recording lacks.
+  CalibrationProblem(const Robot& robot, std::vector<Recording> recordings, const CalibrationOptions& options,
                      InstructionSet kernel = widest_instruction_set());
   ~CalibrationProblem();
   CalibrationProblem(CalibrationProblem&&) noexcept;
@@ -62,6 +75,7 @@ class CalibrationProblem {
 
   std::string name() const { return "calibration"; }
   const std::vector<ParameterInfo>& parameters() const { return parameters_; }
+  const CalibrationOptions& options() const { return options_; }
   double cost(const ConstVectorRef& z) const;
   Eigen::Index residual_count() const;
   void residuals(const ConstVectorRef& z, VectorRef r) const;
@@ -69,24 +83,30 @@ class CalibrationProblem {
   void normal_equations(const ConstVectorRef& z, NormalEquations& out) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
   // F + 2 sqrt(F J(z)), F = (2 eps)^2 sum k (x_k^2 + y_k^2 + theta_k^2) over the references: k additions
-  // leave an error of about
-  // 2 eps sqrt(k) |x_k| in a pose. Sums of squares only: what is left never exceeds that of the equations as
-  // written.
+  // leave an error of about 2 eps sqrt(k) |x_k| in a pose. Sums of squares only: what is left never exceeds
+  // that of the equations as written.
   double rounding_floor(const ConstVectorRef& z) const;
 
   const std::vector<Recording>& recordings() const { return recordings_; }
   InstructionSet kernel() const { return kernel_; }
+  // Whether the structured form evaluates J.
+  bool structured() const { return structure_ != nullptr; }
+  // Null where structured.
+  const WheeledForm* general() const { return general_.get(); }
   PoseTrack integrate(std::size_t recording, const ConstVectorRef& z) const;
-  // One entry per recording, for the error tables.
+  // One entry per recording, for the error tables, over the samples with a reference.
   std::vector<MaxErrors> max_errors(const ConstVectorRef& z) const;
 
  private:
   struct Structure;
+  void set_rounding_floor();
   std::vector<ParameterInfo> parameters_;
   std::vector<Recording> recordings_;
+  CalibrationOptions options_;
   InstructionSet kernel_;
   double exact_floor_ = 0;  // F
   std::unique_ptr<Structure> structure_;
+  std::unique_ptr<WheeledForm> general_;
 };
 
 }  // namespace odobench

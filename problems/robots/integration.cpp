@@ -2,18 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "base/names.hpp"
 
 namespace odobench::robots {
 namespace {
 
-constexpr std::array<std::string_view, 4> kRuleNames = {"euler", "midpoint", "arc", "optiodom-omni"};
 constexpr double kOptiodomStraight = 1e-5;  // rad/s
 
 void check_integration(IntegrationRule rule, const ConstMatrixRef& motions, const Eigen::Vector3d& start,
@@ -70,18 +64,6 @@ void integrate_poses(IntegrationRule rule, const ConstMatrixRef& motions, const 
 }
 
 }  // namespace
-
-std::string_view name_of(IntegrationRule rule) {
-  return kRuleNames[static_cast<std::size_t>(rule)];
-}
-
-IntegrationRule integration_rule(std::string_view name) {
-  for (std::size_t i = 0; i < kRuleNames.size(); ++i)
-    if (name == kRuleNames[i]) return static_cast<IntegrationRule>(i);
-  throw std::invalid_argument(
-      fmt::format("unknown integration rule '{}'{}; there are euler, midpoint, arc, optiodom-omni", name,
-                  did_you_mean(name, {kRuleNames.begin(), kRuleNames.end()})));
-}
 
 double sine_quotient(double h) {
   return std::abs(h) < 1e-4 ? 1 - h * h / 6 : std::sin(h) / h;

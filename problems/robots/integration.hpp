@@ -14,17 +14,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string_view>
 
+#include "datasets/robots/integration_rule.hpp"
 #include "problems/robots/matrices.hpp"
 
 namespace odobench::robots {
-
-enum class IntegrationRule { Euler, Midpoint, Arc, OptiodomOmni };
-
-std::string_view name_of(IntegrationRule rule);
-// Throws std::invalid_argument for an unknown name, with the nearest one.
-IntegrationRule integration_rule(std::string_view name);
 
 // sin(h) / h, and its derivative by h.
 double sine_quotient(double h);

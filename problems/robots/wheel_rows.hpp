@@ -1,4 +1,4 @@
-// The rows of one wheel at one sample, and their derivatives by the wheel's fields (datasets/wheel.hpp has
+// The rows of one wheel at one sample, and their derivatives by the wheel's fields (datasets/robots/wheel.hpp has
 // the equations).
 //
 // A row is a (vx, vy, omega)' = b. With a = e + tan(roller) n the drive row is (a_x, a_y, p x a), its right
@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "datasets/wheel.hpp"
+#include "datasets/robots/wheel.hpp"
 
 namespace odobench::robots {
 

@@ -1,4 +1,4 @@
-// The forward kinematics of any wheeled robot that is a table of wheels (datasets/wheel.hpp): twists (vx, vy,
+// The forward kinematics of any wheeled robot that is a table of wheels (datasets/robots/wheel.hpp): twists (vx, vy,
 // omega) of the body from its wheels' signals, with derivatives by the parameters z.
 //
 // Least squares: all rows together are A t = b; t = (A'A)^-1 A'b, and with the slip q = b - A t
@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/wheel.hpp"
+#include "datasets/robots/wheel.hpp"
 #include "problems/robots/matrices.hpp"
 
 namespace odobench::robots {

@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "base/angle.hpp"
-#include "problems/robots/layouts.hpp"
+#include "datasets/robots/layouts.hpp"
 #include "tests/support/robots.hpp"
 
 namespace odobench::robots {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "datasets/robots/layouts.hpp"
 #include "problems/robots/integration.hpp"
-#include "problems/robots/layouts.hpp"
 #include "tests/support/robots.hpp"
 
 namespace odobench::robots {

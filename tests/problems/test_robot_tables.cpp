@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "problems/robots/layouts.hpp"
+#include "datasets/robots/layouts.hpp"
 #include "tests/support/robots.hpp"
 
 namespace odobench::robots {

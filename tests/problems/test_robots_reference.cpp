@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "problems/robots/layouts.hpp"
+#include "datasets/robots/layouts.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -1,4 +1,4 @@
-#include "problems/robots/layouts.hpp"
+#include "datasets/robots/layouts.hpp"
 
 #include <fmt/format.h>
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/wheel.hpp"
-#include "problems/robots/integration.hpp"
+#include "datasets/robots/wheel.hpp"
+#include "datasets/robots/integration_rule.hpp"
 
 namespace odobench::robots {
 
