@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
@@ -140,6 +141,9 @@ void WheeledForm::choose_rows(const Recording& recording, Drive& drive) const {
 WheeledForm::Point WheeledForm::point(const ConstVectorRef& z, bool derivatives) const {
   Point at;
   at.robot = z.head(static_cast<Index>(robot_.parameters().size()));
+  // Sums of squares of what comes of larger numbers are not finite.
+  at.usable = z.allFinite() && z.cwiseAbs().maxCoeff() <= kLargestNumber;
+  if (!at.usable) return at;
   if (options_.mount) at.mount = z.tail<3>();
   if (robot_.is_linear()) {
     if (derivatives)
@@ -165,6 +169,11 @@ Matrix WheeledForm::poses(const Drive& drive, const Point& at) const {
 
 void WheeledForm::residuals(const Drive& drive, const Point& at, VectorRef r, MatrixRef* j) const {
   const Index intervals = drive.seconds.size(), own = at.robot.size();
+  if (!at.usable) {
+    r.setConstant(kNotANumber);
+    if (j != nullptr) j->setConstant(kNotANumber);
+    return;
+  }
   Matrix positions, by;
   if (j == nullptr) {
     positions = poses(drive, at);

@@ -56,6 +56,7 @@ class WheeledForm {
   };
   // The robot's part of z, and the rest.
   struct Point {
+    bool usable = true;  // false: numbers that no robot has, which have no cost
     Vector robot;
     Eigen::Vector3d mount = Eigen::Vector3d::Zero();
     Matrix matrix;                    // of a robot that is linear

@@ -142,13 +142,13 @@ std::vector<Format> make_formats() {
          return {{"evaluate", "--data=" + file, "--out=" + out(f, "run"), "--overwrite"},
                  {"list", "data", file}};
        }},
-      {"recording", [] { return std::vector<std::string>{encode_recording(tiny_dataset().recordings[0])}; },
+      {"recording", [] { return std::vector<std::string>{encode_recording(tiny_dataset().recordings[0], 1)}; },
        [](Bytes b, Files f) -> Commands {
          Dataset d = tiny_dataset();
          d.recordings.resize(1);
          save_dataset(d, f / "set.json");
          std::string set = content(f / "set.json");
-         const std::string good = sha256(encode_recording(d.recordings[0]));
+         const std::string good = sha256(encode_recording(d.recordings[0], 1));
          set.replace(set.find(good), good.size(), sha256(b));
          f.file("set.json", set);
          f.file("set_recordings/" + d.recordings[0].id + ".rec", b);
