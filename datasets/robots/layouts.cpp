@@ -270,8 +270,12 @@ const std::vector<Layout>& layouts() {
       "straight lines tell the mean radius and (r_right - r_left)/b, turning on the spot (r_right + "
       "r_left)/b; one "
       "sense of turning moves r_right and b together";
-  static const std::string kYaw =
-      "with an unknown mount of the tracked frame one wheel, or the mount, must be fixed";
+  static const std::string kMount =
+      "with an unknown mount of the tracked frame three combinations are free: fix one wheel or the mount";
+  static const std::string kModules =
+      "with an unknown mount of the tracked frame its yaw turns all modules and zeros together, its place "
+      "moves all "
+      "modules: fix one module or the mount";
   static const std::vector<Layout> list = {
       {"differential", "two driven wheels on one axle", Arc, {kScale, kTurning}, differential_robot},
       {"skid_steer",
@@ -302,7 +306,10 @@ const std::vector<Layout>& layouts() {
       {"omni3_full",
        "the same with distance and mount of each wheel",
        Arc,
-       {"nine numbers of twelve: a wheel may be moved along its own direction of rolling", kYaw},
+       {"nine numbers are all that three wheels have: moving a wheel along its own direction of rolling "
+        "changes "
+        "nothing, so R_i is its distance on a given ray",
+        kMount},
        omni3_robot(true)},
       {"omni4",
        "four omni wheels at 45, 135, 225 and 315 degrees",
@@ -312,22 +319,24 @@ const std::vector<Layout>& layouts() {
       {"omni4_full",
        "the same with distance and mount of each wheel",
        Arc,
-       {"a wheel may be moved along its own direction of rolling", kYaw},
+       {"moving a wheel along its own direction of rolling changes nothing, so R_i is its distance on a "
+        "given ray",
+        kMount},
        omni4_robot(true)},
       {"mecanum",
        "four wheels with rollers at 45 degrees",
        Arc,
-       {"lx and ly act only as lx + ly (with the roller angle g: ly + lx tan g); g only through vy", kYaw},
+       {"lx and ly act only as lx + ly (with the roller angle g: ly + lx tan g); g only through vy"},
        mecanum_robot},
       {"swerve",
        "any number of steered and driven modules, contacts at their pivots",
        Arc,
-       {"turning all modules and all zeros together is a yaw of the tracked frame", kYaw},
+       {kModules},
        [](DimensionReader& d) { return swerve_robot(d, false); }},
       {"swerve_offset",
        "the same with contacts beside their pivots",
        Arc,
-       {"turning all modules and all zeros together is a yaw of the tracked frame", kYaw},
+       {kModules},
        [](DimensionReader& d) { return swerve_robot(d, true); }},
       {"4wis4wid",
        "four steered and driven wheels, the published mean",

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
+#include <array>
 #include <cmath>
 #include <map>
 #include <ostream>
@@ -28,6 +30,9 @@ struct RobotClass {
   Dimensions dimensions;
   bool linear;
   bool holonomic;
+  // How many combinations of free parameters no drive tells, with the tracked frame known, and with its mount
+  // unknown, too.
+  std::array<int, 2> hidden;
   // From parameters and signals; none where there is no closed form.
   std::function<Eigen::Vector3d(Named z, Named s)> closed_form;
   bool mean = false;        // by the published mean, which asymmetric robots do not invert
@@ -86,42 +91,46 @@ const std::vector<RobotClass> kClasses = {
      {{"r_left", 0.055}},
      true,
      false,
+     {0, 0},
      [](Named z, Named s) { return differential_twist(z, s, z.at("b")); }},
     {"skid_steer",
      {{"b", 0.4}},
      true,
      false,
+     {0, 0},
      [](Named z, Named s) { return differential_twist(z, s, 0.4 * z.at("slip")); }},
     {"tricycle",
      {},
      true,
      false,
+     {0, 0},
      [](Named z, Named s) {
        const double v = z.at("r") * s.at("wheel"), phi = s.at("steering") + z.at("steering_zero");
        return Eigen::Vector3d(v * std::cos(phi), 0, v * std::sin(phi) / z.at("wheelbase"));
      }},
-    {"bicycle", {}, false, false, bicycle_twist},
-    {"bicycle", {}, true, false, bicycle_twist, false, true},
-    {"ackermann", {{"b_front", 0.5}}, false, false, {}},
+    {"bicycle", {}, false, false, {0, 0}, bicycle_twist},
+    {"bicycle", {}, true, false, {0, 0}, bicycle_twist, false, true},
+    {"ackermann", {{"b_front", 0.5}}, false, false, {0, 0}, {}},
     {"omni3",
      {},
      true,
      true,
+     {0, 0},
      [](Named z, Named s) {
        const double u1 = wheel_path(z, s, 1), u2 = wheel_path(z, s, 2), u3 = wheel_path(z, s, 3);
        return Eigen::Vector3d((u2 - u1) / std::sqrt(3), (2 * u3 - u1 - u2) / 3,
                               -(u1 + u2 + u3) / (3 * z.at("R")));
      }},
-    {"omni3_full", {{"R2", 0.25}}, true, true, {}},
-    {"omni4", {}, true, true, omni4_twist},
-    {"omni4_full", {{"mount3", 0.05}}, true, true, {}},
-    {"mecanum", {{"lx", 0.3}}, true, true, mecanum_twist},
-    {"swerve", {{"modules", 3}, {"x1", 0.2}}, true, true, {}},
-    {"swerve", {{"modules", 5}}, true, true, {}},
-    {"swerve", {{"y4", -0.3}}, true, true, {}, true},
-    {"swerve_offset", {{"modules", 3}, {"offset2", 0.01}}, false, true, {}},
-    {"swerve_offset", {{"modules", 4}}, false, true, {}, true},
-    {"4wis4wid", {}, true, true, thesis_twist, true},
+    {"omni3_full", {{"R2", 0.25}}, true, true, {0, 3}, {}},
+    {"omni4", {}, true, true, {0, 0}, omni4_twist},
+    {"omni4_full", {{"mount3", 0.05}}, true, true, {0, 3}, {}},
+    {"mecanum", {{"lx", 0.3}}, true, true, {1, 1}, mecanum_twist},
+    {"swerve", {{"modules", 3}, {"x1", 0.2}}, true, true, {0, 3}, {}},
+    {"swerve", {{"modules", 5}}, true, true, {0, 3}, {}},
+    {"swerve", {{"y4", -0.3}}, true, true, {0, 1}, {}, true},
+    {"swerve_offset", {{"modules", 3}, {"offset2", 0.01}}, false, true, {0, 3}, {}},
+    {"swerve_offset", {{"modules", 4}}, false, true, {0, 1}, {}, true},
+    {"4wis4wid", {}, true, true, {0, 0}, thesis_twist, true},
 };
 
 WheelTable table_of(const RobotClass& c) {
@@ -294,6 +303,34 @@ TEST_P(RobotClasses, MatrixTimesStreams) {
     EXPECT_LT((flat(dm[i] * s) - by).cwiseAbs().maxCoeff(), 1e-12 * std::max(1.0, by.cwiseAbs().maxCoeff()))
         << p.name;
   }
+}
+
+// Rank of the derivatives of many twists, in units of the box. A mount (l_x, l_y, l_th) of the tracked frame
+// changes a twist by (0, omega, 0), (-omega, 0, 0) and (vy, -vx, 0).
+TEST_P(RobotClasses, WhatNoDriveTells) {
+  constexpr Eigen::Index kMany = 200;
+  const Matrix signals = random_signals(robot_, kMany, random_);
+  const Eigen::Index n = z_.size();
+  Matrix t(3, kMany), j = Matrix::Zero(3 * kMany, n + 3);
+  robot_.twists_and_jacobian(signals, z_, t, j.leftCols(n));
+  for (Eigen::Index k = 0; k < kMany; ++k) {
+    j(3 * k, n + 1) = -t(2, k);
+    j(3 * k + 1, n) = t(2, k);
+    j(3 * k, n + 2) = t(1, k);
+    j(3 * k + 1, n + 2) = -t(0, k);
+  }
+  int held = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const RobotParameter& p = robot_.parameters()[static_cast<std::size_t>(i)];
+    j.col(i) *= (p.upper - p.lower) / 2;
+    held += p.lower == p.upper;
+  }
+  const auto hidden = [&](const Matrix& m) {
+    const Vector values = Eigen::JacobiSVD<Matrix>(m).singularValues();
+    return (values.array() < 1e-10 * values[0]).count() - held;
+  };
+  EXPECT_EQ(hidden(j.leftCols(n)), GetParam().hidden[0]);
+  EXPECT_EQ(hidden(j), GetParam().hidden[1]);
 }
 
 TEST_P(RobotClasses, ListingEveryWheelTwiceChangesNoTwist) {
