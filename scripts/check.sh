@@ -51,7 +51,7 @@ problems/kalman               problems
 problems/fusion               problems problems/kalman problems/calibration problems/robots datasets
 problems/information          problems problems/calibration problems/robots datasets
 problems/robots               datasets datasets/robots
-problems/simulation           datasets/
+problems/simulation           datasets/ problems/robots
 problems/simulation/motors    problems/simulation
 solvers                       problems/problem.hpp problems/instruction_set.hpp
 solvers/registry.cpp          solvers/

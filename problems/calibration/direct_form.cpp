@@ -3,6 +3,7 @@
 
 #include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/calibration_problem.hpp"
+#include "problems/robots/four_wheel_steering.hpp"
 
 namespace odobench::direct {
 
@@ -14,15 +15,11 @@ PoseTrack integrate(const Recording& recording, const ConstVectorRef& z) {
   q.y.assign(n, 0.0);
   q.theta.assign(n, recording.reference.theta.at(0));
   for (std::size_t k = 0; k + 1 < n; ++k) {
-    double vx = 0, vy = 0, omega = 0;
-    for (std::size_t i = 0; i < kWheelCount; ++i) {
+    const auto [vx, vy, omega] = robots::published_velocity(q.theta[k], [&](std::size_t i) {
       const auto w = static_cast<Eigen::Index>(i);
-      const double d = steering_of(recording, i)[k];
-      const double v = r[w] * wheel_speed_of(recording, i)[k];
-      vx += std::cos(d + q.theta[k]) / 4 * v;
-      vy += std::sin(d + q.theta[k]) / 4 * v;
-      omega += (-b[w] * std::cos(d) + a[w] * std::sin(d)) / (4 * (a[w] * a[w] + b[w] * b[w])) * v;
-    }
+      return robots::SteeredWheel{a[w], b[w], r[w] * wheel_speed_of(recording, i)[k],
+                                  steering_of(recording, i)[k]};
+    });
     const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
     q.x[k + 1] = q.x[k] + dt * vx;
     q.y[k + 1] = q.y[k] + dt * vy;

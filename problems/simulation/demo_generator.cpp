@@ -7,6 +7,7 @@
 #include "base/angle.hpp"
 #include "base/random.hpp"
 #include "datasets/robot_4wis4wid.hpp"
+#include "problems/robots/four_wheel_steering.hpp"
 
 namespace odobench {
 namespace {
@@ -109,18 +110,12 @@ std::vector<std::int64_t> make_stamps(double seconds, Random& noise) {
   return stamps;
 }
 
-// (2.16)-(2.17): velocity in the world frame at heading theta, from sample k of the wheel signals.
-std::array<double, 3> velocity(const Recording& r, std::size_t k, double theta) {
-  double vx = 0, vy = 0, omega = 0;
-  for (std::size_t i = 0; i < kWheelCount; ++i) {
-    const double a = kTruth[i], b = kTruth[kWheelCount + i],
-                 v = kTruth[2 * kWheelCount + i] * wheel_speed_of(r, i)[k];
-    const double d = steering_of(r, i)[k];
-    vx += std::cos(d + theta) * v / 4;
-    vy += std::sin(d + theta) * v / 4;
-    omega += (-b * std::cos(d) + a * std::sin(d)) / (4 * (a * a + b * b)) * v;
-  }
-  return {vx, vy, omega};
+// In the world frame at heading theta, from sample k of the wheel signals.
+robots::PublishedVelocity velocity(const Recording& r, std::size_t k, double theta) {
+  return robots::published_velocity(theta, [&](std::size_t i) {
+    return robots::SteeredWheel{kTruth[i], kTruth[kWheelCount + i],
+                                kTruth[2 * kWheelCount + i] * wheel_speed_of(r, i)[k], steering_of(r, i)[k]};
+  });
 }
 
 // (3.1) from the origin, seen by the motion capture.

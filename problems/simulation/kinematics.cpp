@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "problems/robots/four_wheel_steering.hpp"
 
 namespace odobench::simulate {
 namespace {
@@ -54,14 +55,11 @@ WheelState inverse_kinematics(const Parameters& z, const Twist& t, const PerWhee
 }
 
 Twist forward_published(const Parameters& z, const WheelState& w, const ContactOffset& offset) {
-  Twist t;
-  for (std::size_t i = 0; i < kWheelCount; ++i) {
-    const Contact c = contact(z, w, offset, i);
-    t.vx += c.vx / 4;
-    t.vy += c.vy / 4;
-    t.omega += (c.x * c.vy - c.y * c.vx) / (4 * (c.x * c.x + c.y * c.y));
-  }
-  return t;
+  const auto [vx, vy, omega] = robots::published_velocity(0, [&](std::size_t i) {
+    return robots::SteeredWheel{z[i], z[kWheelCount + i], z[2 * kWheelCount + i] * w.speed[i], w.steering[i],
+                                offset[i]};
+  });
+  return {vx, vy, omega};
 }
 
 Twist forward_least_squares(const Parameters& z, const WheelState& w, const ContactOffset& offset) {

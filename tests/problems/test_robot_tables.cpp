@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 
 #include "base/error.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 #include "datasets/robots/layouts.hpp"
+#include "problems/robots/four_wheel_steering.hpp"
 #include "tests/support/robots.hpp"
 
 namespace odobench::robots {
@@ -282,6 +284,30 @@ TEST(RobotLayouts, FourWheelSteeringIsThatOfTheThesis) {
     EXPECT_EQ(p.upper, e.upper);
   }
   EXPECT_TRUE(robot.mean_equals_least_squares(robot.nominal()));
+}
+
+// The equations that calibration, fusion and simulation share are those of the table of wheels, turned by the
+// heading.
+TEST(RobotLayouts, PublishedVelocityIsThatOfTheWheels) {
+  WheelTable table =
+      make_robot(layout("swerve_offset"), {{"x1", 0.15}, {"offset1", 0.01}, {"offset3", -0.02}});
+  table.rule = TwistRule::Mean;
+  const WheeledRobot robot(table);
+  std::mt19937 random(1);
+  const Matrix signals = testing::random_signals(robot, 20, random);
+  const Vector z = robot.nominal();
+  const Matrix twists = twists_of(robot, signals, z);
+  for (Eigen::Index k = 0; k < 20; ++k) {
+    const double heading = 0.3 * static_cast<double>(k);
+    const PublishedVelocity v = published_velocity(heading, [&](std::size_t i) {
+      const auto w = static_cast<Eigen::Index>(i), p = 5 * w;  // x, y, r, zero, offset
+      return SteeredWheel{z[p], z[p + 1], z[p + 2] * signals(w, k), signals(4 + w, k), z[p + 4]};
+    });
+    const Eigen::Vector2d world = Eigen::Rotation2Dd(heading) * twists.col(k).head<2>();
+    EXPECT_NEAR(v.vx, world[0], 1e-15);
+    EXPECT_NEAR(v.vy, world[1], 1e-15);
+    EXPECT_NEAR(v.omega, twists(2, k), 1e-14);
+  }
 }
 
 }  // namespace
