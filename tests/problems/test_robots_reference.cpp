@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/robots/layouts.hpp"
+#include "problems/robots/integration.hpp"
 #include "tests/support/robots.hpp"
 #include "tests/support/shared_data.hpp"
 
