@@ -306,12 +306,8 @@ const std::string& JsonNode::file() const {
   return document_->file;
 }
 
-bool JsonNode::is_object() const {
-  return value_->is_object();
-}
-
-bool JsonNode::is_array() const {
-  return value_->is_array();
+char JsonNode::kind() const {
+  return value_->is_object() ? '{' : value_->is_array() ? '[' : ' ';
 }
 
 bool JsonNode::has(const std::string& key) const {

@@ -37,8 +37,8 @@ class JsonNode {
   // One document of a file that has many: the one that is its line `line`.
   static JsonNode parse_line(std::string_view text, const std::filesystem::path& file, std::size_t line);
 
-  bool is_object() const;
-  bool is_array() const;
+  bool is_object() const { return kind() == '{'; }
+  bool is_array() const { return kind() == '['; }
   bool has(const std::string& key) const;
   // The member; missing or not an object: DataError.
   JsonNode at(const std::string& key) const;
@@ -74,6 +74,7 @@ class JsonNode {
   const std::string& file() const;
 
  private:
+  char kind() const;  // '{', '[' or ' '
   struct Document;
   JsonNode(std::shared_ptr<const Document> document, const nlohmann::json* value);
   JsonNode element(std::size_t index) const;

@@ -23,8 +23,9 @@ struct ExpectedRecording {
   int schema = 1;
 };
 
-// Fills the columns of recording, which has the names and kinds of its signals. Throws DataError "file: byte N: ..." about a broken header, another
-// version, other columns, a size that is not the stated one, a wrong sum, and everything find_fault() finds.
+// Fills the columns of recording, which has the names and kinds of its signals. Throws DataError "file: byte
+// N: ..." about a broken header, another version, other columns, a size that is not the stated one, a wrong
+// sum, and everything find_fault() finds.
 void decode_recording(std::string_view bytes, const ExpectedRecording& expected, Recording& recording);
 
 }  // namespace odobench

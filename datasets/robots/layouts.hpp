@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/robots/wheel.hpp"
 #include "datasets/robots/integration_rule.hpp"
+#include "datasets/robots/wheel.hpp"
 
 namespace odobench::robots {
 

@@ -64,9 +64,9 @@ class CalibrationProblem {
   // on a kernel that the processor does not have.
   CalibrationProblem(std::vector<ParameterInfo> parameters, std::vector<Recording> recordings,
                      InstructionSet kernel = widest_instruction_set());
-  // Any robot and cost; the structured form where options.as_in_thesis() and the robot is the thesis' with the
-  // mean. With options.mount three parameters more: mount_x, mount_y [m], mount_yaw [rad], within 0.25 m and
-  // 0.2 rad. Throws std::invalid_argument as above, and for what the robot needs and a recording lacks.
+  // Any robot and cost; the structured form where options.as_in_thesis() and the robot is the thesis' with
+  // the mean. With options.mount three parameters more: mount_x, mount_y [m], mount_yaw [rad], within 0.25 m
+  // and 0.2 rad. Throws std::invalid_argument as above, and for what the robot needs and a recording lacks.
   CalibrationProblem(const Robot& robot, std::vector<Recording> recordings, const CalibrationOptions& options,
                      InstructionSet kernel = widest_instruction_set());
   ~CalibrationProblem();

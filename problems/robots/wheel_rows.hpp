@@ -1,5 +1,5 @@
-// The rows of one wheel at one sample, and their derivatives by the wheel's fields (datasets/robots/wheel.hpp has
-// the equations).
+// The rows of one wheel at one sample, and their derivatives by the wheel's fields
+// (datasets/robots/wheel.hpp has the equations).
 //
 // A row is a (vx, vy, omega)' = b. With a = e + tan(roller) n the drive row is (a_x, a_y, p x a), its right
 // side radius w - (tan(roller) trail - offset) phi'; the side row is (n_x, n_y, p x n), its right side -trail

@@ -1,5 +1,5 @@
-// The forward kinematics of any wheeled robot that is a table of wheels (datasets/robots/wheel.hpp): twists (vx, vy,
-// omega) of the body from its wheels' signals, with derivatives by the parameters z.
+// The forward kinematics of any wheeled robot that is a table of wheels (datasets/robots/wheel.hpp): twists
+// (vx, vy, omega) of the body from its wheels' signals, with derivatives by the parameters z.
 //
 // Least squares: all rows together are A t = b; t = (A'A)^-1 A'b, and with the slip q = b - A t
 //     dt = (A'A)^-1 (dA'q + A'(db - dA t)).

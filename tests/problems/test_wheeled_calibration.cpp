@@ -213,9 +213,9 @@ TEST(WheeledCalibration, ATapeMeasureAtTheEndIsEnough) {
   EXPECT_EQ(every.residual_count(), 9);
   EXPECT_LT(every.cost(truth), 1e-22);
   options.cost = CostKind::FinalPose;
-  const CalibrationProblem final_pose(robot, recordings, options);
+  const auto final_pose = std::make_shared<const CalibrationProblem>(robot, recordings, options);
   const Vector z = inside(every.parameters(), 1);
-  EXPECT_EQ(every.cost(z), final_pose.cost(z)) << "the same rows";
+  EXPECT_EQ(every.cost(z), final_pose->cost(z)) << "the same rows";
   const Result result = solve(Problem(final_pose), parse_solver_list("lm").front(), truth * 1.01, {});
   EXPECT_LT((result.x - truth).norm(), 1e-8);
 }

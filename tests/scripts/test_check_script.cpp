@@ -63,9 +63,8 @@ const std::vector<Violation> kViolations = {
      "reports/records"},
     {"BaseIncludesDatasets", "base/files.cpp", "#include \"datasets/reader.hpp\"\n",
      "base/files.cpp:1: includes \"datasets/reader.hpp\": base includes nothing of ours but base"},
-    {"ProblemsIncludeOtherDatasetHeader", "problems/calibration/model.cpp",
-     "#include \"datasets/reader.hpp\"\n",
-     "problems/calibration/model.cpp:1: includes \"datasets/reader.hpp\": problems/calibration includes only "
+    {"ProblemsIncludeOtherDatasetHeader", "problems/classic/model.cpp", "#include \"datasets/reader.hpp\"\n",
+     "problems/classic/model.cpp:1: includes \"datasets/reader.hpp\": problems/classic includes only "
      "base"},
     {"SolversIncludeConcreteProblem", "solvers/method.cpp", "#include \"problems/calibration/model.hpp\"\n",
      "solvers/method.cpp:1: includes \"problems/calibration/model.hpp\": solvers includes only base"},

@@ -142,7 +142,8 @@ std::vector<Format> make_formats() {
          return {{"evaluate", "--data=" + file, "--out=" + out(f, "run"), "--overwrite"},
                  {"list", "data", file}};
        }},
-      {"recording", [] { return std::vector<std::string>{encode_recording(tiny_dataset().recordings[0], 1)}; },
+      {"recording",
+       [] { return std::vector<std::string>{encode_recording(tiny_dataset().recordings[0], 1)}; },
        [](Bytes b, Files f) -> Commands {
          Dataset d = tiny_dataset();
          d.recordings.resize(1);
