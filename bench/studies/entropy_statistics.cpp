@@ -5,8 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 namespace odobench {
+namespace {
+
+// Of the filter's output; what it was given and the control are what they are.
+Better better_at(std::size_t stage) {
+  return std::string_view(kNoiseStages[stage]) == "after" ? Better::Lower : Better::None;
+}
+
+}  // namespace
 
 void Average::add(double value) {
   min_ = count_ == 0 ? value : std::min(min_, value);
@@ -78,20 +87,22 @@ void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const Tru
   for (Track& track : tracks_) track.compare(true_pose_);
 }
 
-void NoiseMeter::report(std::map<std::string, double>& statistics) const {
+void NoiseMeter::report(Measures& measures) const {
   for (std::size_t c = 0; c < kNoiseChannels.size(); ++c)
     for (std::size_t stage = 0; stage < 3; ++stage) {
       const Errors& errors = errors_[c][stage];
-      const auto put = [&](const char* measure, double value) {
-        statistics[fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, kNoiseStages[stage])] = value;
+      const auto put = [&](const char* measure, double value, const char* unit) {
+        measures.put({fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, kNoiseStages[stage]),
+                      value, unit, better_at(stage), kNoiseChannels[c].id});
       };
-      put("rms", std::sqrt(errors.square.mean()));
-      if (truth_[c].mean() > 0) put("ratio", errors.magnitude.mean() / truth_[c].mean());
-      put("max", errors.magnitude.max());
+      put("rms", std::sqrt(errors.square.mean()), kNoiseChannels[c].unit);
+      if (truth_[c].mean() > 0) put("ratio", errors.magnitude.mean() / truth_[c].mean(), "");
+      put("max", errors.magnitude.max(), kNoiseChannels[c].unit);
     }
   for (std::size_t stage = 0; stage < 3; ++stage) {
-    statistics[fmt::format("track.end.{}", kNoiseStages[stage])] = tracks_[stage].end;
-    statistics[fmt::format("track.max.{}", kNoiseStages[stage])] = tracks_[stage].max;
+    const char* name = kNoiseStages[stage];
+    measures.put({fmt::format("track.end.{}", name), tracks_[stage].end, "m", better_at(stage)});
+    measures.put({fmt::format("track.max.{}", name), tracks_[stage].max, "m", better_at(stage)});
   }
 }
 
@@ -112,25 +123,26 @@ void MethodMeter::add(const FilterOutput& output, std::optional<double> exact,
   if (relaxed) gap_relaxed_.add(*relaxed - output.hamiltonian);
 }
 
-void MethodMeter::report(std::map<std::string, double>& statistics) const {
+void MethodMeter::report(Measures& measures) const {
   if (windows() == 0) return;
-  statistics["windows"] = static_cast<double>(windows());
-  statistics["iterations_mean"] = iterations_.mean();
-  statistics["iterations_max"] = iterations_.max();
-  statistics["evaluations_mean"] = evaluations_.mean();
-  statistics["hamiltonian_mean"] = hamiltonian_.mean();
-  statistics["hamiltonian_min"] = hamiltonian_.min();
-  statistics["hamiltonian_max"] = hamiltonian_.max();
-  statistics["gain_mean"] = gain_.mean();
-  statistics["gain_max"] = gain_.max();
+  measures.put({"windows", static_cast<double>(windows()), ""});
+  measures.put({"iterations_mean", iterations_.mean(), "", Better::Lower});
+  measures.put({"iterations_max", iterations_.max(), "", Better::Lower});
+  measures.put({"evaluations_mean", evaluations_.mean(), "", Better::Lower});
+  measures.put({"hamiltonian_mean", hamiltonian_.mean(), "", Better::Higher});
+  measures.put({"hamiltonian_min", hamiltonian_.min(), ""});
+  measures.put({"hamiltonian_max", hamiltonian_.max(), ""});
+  measures.put({"gain_mean", gain_.mean(), "", Better::Higher});
+  measures.put({"gain_max", gain_.max(), "", Better::Higher});
   if (gap_exact_.count() > 0) {
-    statistics["gap_exact_mean"] = gap_exact_.mean();
-    statistics["gap_exact_max"] = gap_exact_.max();
-    statistics["at_optimum"] = static_cast<double>(at_optimum_) / static_cast<double>(gap_exact_.count());
+    const double share = static_cast<double>(at_optimum_) / static_cast<double>(gap_exact_.count());
+    measures.put({"gap_exact_mean", gap_exact_.mean(), "", Better::Lower});
+    measures.put({"gap_exact_max", gap_exact_.max(), "", Better::Lower});
+    measures.put({"at_optimum", share, "", Better::Higher});
   }
   if (gap_relaxed_.count() > 0) {
-    statistics["gap_relaxed_mean"] = gap_relaxed_.mean();
-    statistics["gap_relaxed_max"] = gap_relaxed_.max();
+    measures.put({"gap_relaxed_mean", gap_relaxed_.mean(), "", Better::Lower});
+    measures.put({"gap_relaxed_max", gap_relaxed_.max(), "", Better::Lower});
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,7 +51,7 @@ class NoiseMeter {
   // The first row of the window, the truth of it and of the row after it, and the filter's output.
   void add(const ConvertedRow& row, const TrueSample& truth, const TrueSample& next,
            const FilterOutput& output);
-  void report(std::map<std::string, double>& statistics) const;
+  void report(Measures& measures) const;
 
  private:
   struct Errors {
@@ -88,7 +87,7 @@ class MethodMeter {
   std::int64_t evaluations() const { return evaluations_sum_; }
   const GapHistogram& histogram() const { return histogram_; }
   double hamiltonian_mean() const { return hamiltonian_.mean(); }
-  void report(std::map<std::string, double>& statistics) const;
+  void report(Measures& measures) const;
 
  private:
   Average iterations_, evaluations_, hamiltonian_, gain_, gap_exact_, gap_relaxed_;

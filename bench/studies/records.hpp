@@ -27,7 +27,7 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
                             const RunContext& context);
 
 // What a study says that has no cost interface of its own: label, parameters `values` of `parameters`; the
-// caller adds errors, statistics and series. Kind "evaluation".
+// caller adds errors, measures and series. Kind "evaluation".
 RunRecord study_record(const std::string& problem, const std::string& dataset, const std::string& label,
                        const std::vector<ParameterInfo>& parameters, const Vector& values,
                        const RunContext& context);

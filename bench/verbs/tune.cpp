@@ -212,9 +212,9 @@ std::vector<RunRecord> tuning_records(const Problem& problem, const std::vector<
     record.cost = s.cost;
     record.evaluations = record.cost_evaluations = static_cast<std::int64_t>(s.evaluations);
     record.errors = s.held_out.errors;
-    record.statistics = {{"rmse_position", s.held_out.row.rmse_position},
-                         {"rmse_heading", s.held_out.row.rmse_heading},
-                         {"nees_mean", s.held_out.row.mean_nees}};
+    record.measures = {{"rmse_position", s.held_out.row.rmse_position, "m"},
+                       {"rmse_heading", s.held_out.row.rmse_heading, "rad"},
+                       {"nees_mean", s.held_out.row.mean_nees, ""}};
     records.push_back(std::move(record));
   }
   return records;

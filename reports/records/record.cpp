@@ -8,6 +8,7 @@
 
 #include "base/files.hpp"
 #include "base/json_node.hpp"
+#include "reports/records/schema_1.hpp"
 
 namespace odobench {
 namespace {
@@ -147,6 +148,15 @@ void read_identity(const JsonNode& node, RunRecord& r) {
     for (const std::string& key : budget->keys()) r.budget[key] = budget->at(key).stored_number();
 }
 
+void read_measures(const JsonNode& node, Measures& measures) {
+  if (node.at("schema_version").integer() > 1) {
+    if (const auto list = node.find("measures")) measures = measures_from(*list);
+  } else if (const auto statistics = node.find("statistics")) {
+    for (const std::string& name : statistics->keys())
+      measures.put(schema_1_measure(name, statistics->at(name).stored_number()));
+  }
+}
+
 void read_outcome(const JsonNode& node, RunRecord& r) {
   r.termination = node.at("termination").text();
   r.message = node.at("message").text();
@@ -166,8 +176,7 @@ void read_outcome(const JsonNode& node, RunRecord& r) {
   if (const auto notes = node.find("notes"))  // absent in records of other makers: none
     for (const JsonNode& item : notes->elements()) r.notes.push_back(item.text());
   if (const auto group = node.find("group")) r.group = group->text();
-  if (const auto statistics = node.find("statistics"))
-    for (const std::string& key : statistics->keys()) r.statistics[key] = statistics->at(key).stored_number();
+  read_measures(node, r.measures);
   if (const auto series = node.find("series"))
     for (const std::string& key : series->keys()) r.series[key] = series->at(key).stored_numbers();
   r.context = context_from(node.at("context"));
@@ -213,7 +222,7 @@ json to_json(const RunRecord& r) {
   if (r.check) out["check"] = to_json(*r.check);
   if (!r.group.empty()) out["group"] = r.group;
   for (const auto& [key, value] : r.budget) out["budget"][key] = finite_or_null(value);
-  for (const auto& [key, value] : r.statistics) out["statistics"][key] = finite_or_null(value);
+  if (!r.measures.empty()) out["measures"] = to_json(r.measures);
   for (const auto& [key, values] : r.series) {
     json list = json::array();
     for (const double value : values) list.push_back(finite_or_null(value));
@@ -224,8 +233,9 @@ json to_json(const RunRecord& r) {
 
 RunRecord record_from(const JsonNode& node) {
   const JsonNode version = node.at("schema_version");
-  if (version.integer() != kRecordSchemaVersion)
-    version.fail(fmt::format("{}: it was written by another version of this program", kRecordSchemaVersion));
+  if (version.integer() < 1 || version.integer() > kRecordSchemaVersion)
+    version.fail(
+        fmt::format("1 to {}: it was written by another version of this program", kRecordSchemaVersion));
   RunRecord record;
   read_identity(node, record);
   read_outcome(node, record);

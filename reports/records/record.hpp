@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "reports/records/measure.hpp"
+
 namespace odobench {
 
-class JsonNode;
-
-inline constexpr int kRecordSchemaVersion = 1;
+inline constexpr int kRecordSchemaVersion = 2;
 
 // e_n = max_k |estimate - reference| of one recording, for x, y [m] and theta [rad].
 struct RecordingError {
@@ -108,9 +108,8 @@ struct RunRecord {
   double seconds = 0;
   std::vector<TracePoint> trace;
   std::string group;  // of data sets with groups: the one that this member is in
-  // Figures beyond cost and errors by name; reports/kinds/entropy/entropy_tables.hpp and
-  // reports/kinds/entropy/window_tables.hpp say which.
-  std::map<std::string, double> statistics;
+  // Figures beyond cost and errors; the header of each kind of record (reports/kinds/) says which.
+  Measures measures;
   // Lists of figures by name: kIdentifiabilitySeries below, those of reports/kinds/entropy/entropy_tables.hpp
   // and reports/kinds/fusion/fusion_tables.hpp. What is not finite is stored as null and read as
   // not-a-number.
@@ -133,7 +132,8 @@ inline constexpr std::array<const char*, 5> kIdentifiabilitySeries{
 // Doubles keep every bit, except that JSON has no word for what is not finite: it is written as null and read
 // as not-a-number (an optional cost: as absent).
 nlohmann::json to_json(const RunRecord& record);
-// DataError names the field, what was found and what was expected. Fields that it does not know are ignored.
+// Of schema 1 or 2. DataError names the field, what was found and what was expected. Fields that it does not
+// know are ignored.
 RunRecord record_from(const JsonNode& node);
 
 // Whether `converged` was said though a step found without the problem's own derivatives would still gain:

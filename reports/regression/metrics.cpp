@@ -1,12 +1,10 @@
 #include "reports/regression/metrics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
-#include <set>
 
 #include "reports/statistics/statistics.hpp"
 
@@ -14,32 +12,6 @@ namespace odobench {
 namespace {
 
 using FigureOfRun = std::function<std::optional<double>(std::size_t)>;  // of a run by its place in the row
-
-struct Direction {
-  const char* prefix;
-  const char* suffix;
-  Better better;
-};
-// Of the statistics in reports/kinds/entropy/entropy_tables.hpp and reports/kinds/entropy/window_tables.hpp;
-// others have no direction.
-constexpr std::array<Direction, 9> kDirections{{{"windows_per_second", "", Better::Higher},
-                                                {"at_optimum", "", Better::Higher},
-                                                {"gain_", "", Better::Higher},
-                                                {"hamiltonian_mean", "", Better::Higher},
-                                                {"gap_", "", Better::Lower},
-                                                {"iterations_", "", Better::Lower},
-                                                {"evaluations_", "", Better::Lower},
-                                                {"noise.", ".after", Better::Lower},
-                                                {"track.", ".after", Better::Lower}}};
-
-Better direction_of(const std::string& name) {
-  const auto ends_with = [&](const std::string& end) {
-    return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-  };
-  for (const Direction& d : kDirections)
-    if (name.rfind(d.prefix, 0) == 0 && ends_with(d.suffix)) return d.better;
-  return Better::None;
-}
 
 class Collector {
  public:
@@ -57,7 +29,7 @@ class Collector {
     totals();
     trajectories();
     if (row_.kind == "run") effort();
-    statistics();
+    measures();
     return std::move(metrics_);
   }
 
@@ -122,16 +94,15 @@ class Collector {
         [&](std::size_t i) { return std::optional<double>(run(i).seconds); });
   }
 
-  void statistics() {
-    std::set<std::string> names;
+  // What a measure is, its first run says.
+  void measures() {
+    Measures all;
     for (const RunRecord* one : row_.runs)
-      for (const auto& [name, value] : one->statistics) names.insert(name);
-    for (const std::string& name : names)
-      add({name, "statistics", "", direction_of(name), false, name == "windows_per_second", {}},
-          [&](std::size_t i) -> std::optional<double> {
-            const auto found = run(i).statistics.find(name);
-            return found == run(i).statistics.end() ? std::nullopt : std::optional<double>(found->second);
-          });
+      for (const Measure& measure : one->measures)
+        if (all.find(measure.name) == nullptr) all.put(measure);
+    for (const Measure& measure : all)
+      add({measure.name, "statistics", measure.unit, measure.better, false, measure.timing, {}},
+          [&](std::size_t i) { return run(i).measures.value(measure.name); });
   }
 
   const ComparisonRow& row_;

@@ -15,13 +15,14 @@ namespace odobench {
 //   mixed
 //   e_sr.TRAJECTORY.x, .y, .theta           mean over the repetitions of the largest error [m], [rad]
 //   evaluations, iterations, seconds        effort; only of runs, not of given parameters
-//   any key of RunRecord::statistics        alphabetical
+//   every measure of the records            alphabetical; unit, direction and timing are its own
 // A run without the figure that other runs of the row have (it failed) counts as worst: +infinity, -infinity
 // where higher is better. Not-a-number of a run counts the same. Where nothing says which way is better, it
 // stays not-a-number.
 struct Metric {
   std::string name;
-  std::string family;  // what a list of metrics may call it by as well: "e_sr", "statistics"; else the name
+  std::string
+      family;  // what a list of metrics may call it by as well: "e_sr", "statistics" (measures); else the name
   std::string unit;
   Better better = Better::Lower;
   bool effort = false;         // what a budget limits: evaluations, iterations, seconds

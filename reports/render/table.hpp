@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "base/better.hpp"
+
 namespace odobench {
 
 enum class Align { Left, Right };
-
-// Which of two numbers of a column is the better one, if that can be said.
-enum class Better { None, Lower, Higher };
 
 // How a number is written for people; the machine formats (csv, json) always carry the full double.
 enum class Notation {

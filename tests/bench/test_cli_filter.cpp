@@ -14,6 +14,7 @@
 #include "reports/records/record.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/filter_run_files.hpp"
+#include "tests/support/measures.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/small_dataset.hpp"
@@ -244,8 +245,9 @@ TEST(CliFilter, RecordsAndReport) {
   EXPECT_EQ(list[0].dataset, "run");
   EXPECT_EQ(list[0].dataset_sha256.size(), 64u);
   EXPECT_EQ(list[0].label, "coordinate");
-  EXPECT_EQ(list[0].statistics.at("windows"), run.rows - 9);
-  EXPECT_GE(list[0].statistics.at("gap_exact_mean"), 0);
+  EXPECT_EQ(list[0].measures.value("windows"), run.rows - 9);
+  EXPECT_GE(list[0].measures.value("gap_exact_mean").value_or(-1), 0);
+  testing::expect_as_in_schema_1(list[0]);
   EXPECT_GT(list[0].iterations, 0);
   EXPECT_GT(list[0].evaluations, 0);
   const ProcessResult report = run_bench({"report", records, "--format=json"});

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/dataset.hpp"
+#include "reports/records/record.hpp"
+#include "tests/support/measures.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/source_dir.hpp"
@@ -253,16 +255,15 @@ TEST(CliTune, LeavesRecordsOfEverySetting) {
                  "--max-evals=8", "--format=json", "--records=" + out});
   ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
   const nlohmann::json tables = nlohmann::json::parse(tuned.out).at("tables");
-  std::vector<nlohmann::json> records;
-  for (const std::string& line : lines(content(folder / "records/runs.jsonl")))
-    records.push_back(nlohmann::json::parse(line));
+  const std::vector<RunRecord> records = read_records((folder / "records/runs.jsonl").string());
   const nlohmann::json& rows = tables.at(2).at("rows");
   ASSERT_EQ(records.size(), rows.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
-    EXPECT_EQ(records[i].at("problem"), "tuning:likelihood");
-    EXPECT_EQ(records[i].at("label"), rows[i].at("setting"));
-    EXPECT_EQ(records[i].at("cost"), rows[i].at("cost"));
-    EXPECT_EQ(records[i].at("statistics").at("rmse_heading"), rows[i].at("rmse_heading"));
+    EXPECT_EQ(records[i].problem, "tuning:likelihood");
+    EXPECT_EQ(records[i].label, rows[i].at("setting"));
+    EXPECT_EQ(records[i].cost, rows[i].at("cost").get<double>());
+    EXPECT_EQ(records[i].measures.value("rmse_heading"), rows[i].at("rmse_heading").get<double>());
+    testing::expect_as_in_schema_1(records[i]);
   }
   EXPECT_THAT(run_bench({"report", out}).out, ::testing::HasSubstr("nlopt:bobyqa"));
 }

@@ -279,11 +279,12 @@ TEST_F(CliReport, AFilterRunShowsItsSignals) {
   const std::vector<double>& detail = record.series.at("detail.theta.before");
   EXPECT_EQ(low, high);  // as short as this run is, every row has a place of its own
   EXPECT_EQ(low, detail);
-  EXPECT_EQ(record.statistics.at("windows"), static_cast<double>(low.size()));
+  EXPECT_EQ(record.measures.value("windows").value_or(-1), static_cast<double>(low.size()));
   double counted = 0;
   for (const double count : record.series.at("gap_counts")) counted += count;
-  EXPECT_EQ(counted, record.statistics.at("windows"));
-  EXPECT_NEAR(record.series.at("gap_counts")[0] / counted, record.statistics.at("at_optimum"), 1e-12);
+  EXPECT_EQ(counted, record.measures.value("windows").value_or(-1));
+  EXPECT_NEAR(record.series.at("gap_counts")[0] / counted, record.measures.value("at_optimum").value_or(-1),
+              1e-12);
   expect_success({"report", dir, "--out=" + (out_ / "f.html").string()});
   EXPECT_THAT(content(out_ / "f.html"), HasSubstr("data-figure=\"signals\""));
   EXPECT_THAT(content(out_ / "f.html"), HasSubstr("data-figure=\"gaps\""));

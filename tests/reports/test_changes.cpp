@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reports/records/schema_1.hpp"
 #include "reports/regression/changes.hpp"
 #include "tests/support/report_records.hpp"
 
@@ -179,7 +180,7 @@ TEST(CompareRuns, KernelsThatDifferAreNamed) {
 TEST(CompareRuns, ListsWhatOneSideHas) {
   std::vector<RunRecord> before{run_record("lm", 1), run_record("ga", 1)};
   std::vector<RunRecord> after{run_record("lm", 1), run_record("ip", 1)};
-  before[0].statistics["gap_exact_mean"] = 1;
+  before[0].measures.put({"gap_exact_mean", 1, "", Better::Lower});
   const RunComparison c = compare_runs(before, after, options());
   std::vector<std::string> list;
   for (const OneSided& o : c.one_sided)
@@ -227,8 +228,8 @@ TEST(CompareRuns, MetricsOfACalibration) {
 TEST(CompareRuns, HigherCanBeBetter) {
   std::vector<RunRecord> before = repeats(1, 0), after = repeats(1, 0);
   for (std::size_t i = 0; i < 10; ++i) {
-    before[i].statistics["at_optimum"] = 0.9 + 0.001 * static_cast<double>(i);
-    after[i].statistics["at_optimum"] = 0.5 + 0.001 * static_cast<double>(i);
+    before[i].measures.put({"at_optimum", 0.9 + 0.001 * static_cast<double>(i), "", Better::Higher});
+    after[i].measures.put({"at_optimum", 0.5 + 0.001 * static_cast<double>(i), "", Better::Higher});
   }
   const RunComparison c = compare_runs(before, after, options({{"at_optimum", -0.2, false}}));
   EXPECT_EQ(change_of(c, "at_optimum").finding, Finding::Worse);
@@ -242,8 +243,8 @@ TEST(CompareRuns, DeviationsOfAFilterAreBetterWhenSmaller) {
   for (std::size_t i = 0; i < before.size(); ++i)
     for (const char* name :
          {"track.end.after", "track.max.after", "track.max.before", "noise.ax.rms.after"}) {
-      before[i].statistics[name] = 0.5 + 0.001 * static_cast<double>(i);
-      after[i].statistics[name] = 0.9 + 0.001 * static_cast<double>(i);
+      before[i].measures.put(schema_1_measure(name, 0.5 + 0.001 * static_cast<double>(i)));
+      after[i].measures.put(schema_1_measure(name, 0.9 + 0.001 * static_cast<double>(i)));
     }
   const RunComparison c = compare_runs(before, after, options());
   EXPECT_EQ(change_of(c, "track.end.after").finding, Finding::Worse);

@@ -23,13 +23,13 @@ RunRecord window_record(const std::string& window, const std::string& method, do
   r.evaluations = 100;
   r.seconds = 2e-6;
   r.parameters = {{"eps", "", -0.123456, 0, -1, 1, ""}, {"eps2", "", -0.0, 0, -1, 1, ""}};
-  r.statistics = {{"samples", 10},
-                  {"hamiltonian", h},
-                  {"hamiltonian_rounded", rounded},
-                  {"hamiltonian_zero", -200},
-                  {"hamiltonian_exact", -100},
-                  {"hamiltonian_relaxed", -90},
-                  {"r1", 0.5}};
+  r.measures = {{"samples", 10, ""},
+                {"hamiltonian", h, ""},
+                {"hamiltonian_rounded", rounded, ""},
+                {"hamiltonian_zero", -200, ""},
+                {"hamiltonian_exact", -100, ""},
+                {"hamiltonian_relaxed", -90, ""},
+                {"r1", 0.5, "m"}};
   return r;
 }
 
@@ -47,7 +47,7 @@ TEST(WindowTables, GapsSharesAndMeans) {
   RunRecord skipped = window_record("b", "qp", 0, 0);
   skipped.kind = "skipped";
   skipped.message = "needs what is not there";
-  skipped.statistics = {{"samples", 10}};
+  skipped.measures = {{"samples", 10, ""}};
   records.push_back(skipped);
   const std::vector<Table> tables = window_tables(records, false);
   ASSERT_EQ(tables.size(), 2u);
@@ -73,13 +73,23 @@ TEST(WindowTables, GapsSharesAndMeans) {
   EXPECT_THAT(methods.notes.back(), HasSubstr("qp: no result for 1 windows: needs what is not there"));
 }
 
+// A file may lack what the program always writes together.
+TEST(WindowTables, WithoutAnOptimumThereIsNoGap) {
+  RunRecord r = window_record("a", "greedy", -100, -100);
+  r.measures = {{"hamiltonian", -100, ""}, {"hamiltonian_rounded", -100, ""}};
+  const std::vector<Table> tables = window_tables({r}, false);
+  EXPECT_EQ(cell(tables[0], 0, "hamiltonian").value, -100);
+  EXPECT_FALSE(cell(tables[0], 0, "gap_exact").value);
+  EXPECT_EQ(cell(tables[1], 0, "runs").value, 0);
+}
+
 // At the optimum means within 1e-9 |H|.
 TEST(WindowTables, TheToleranceOfTheOptimumIsRelative) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const auto& [gap, share] : {std::pair(0.9e-9, 100.0), std::pair(1.1e-9, 0.0)}) {
       RunRecord r = window_record("a", "m", 0, 0);
-      r.statistics["hamiltonian_exact"] = -scale;
-      r.statistics["hamiltonian_rounded"] = -scale * (1 + gap);
+      r.measures.put({"hamiltonian_exact", -scale, ""});
+      r.measures.put({"hamiltonian_rounded", -scale * (1 + gap), ""});
       EXPECT_EQ(cell(window_tables({r}, false)[1], 0, "at_optimum").value, share) << scale << " " << gap;
     }
   }
@@ -92,7 +102,7 @@ TEST(FilterTables, OnlyWhatWasMeasured) {
   r.dataset = "run";
   r.seconds = 0.5;
   r.notes = {"corrected: N 10"};
-  r.statistics = {{"rows", 200}, {"windows", 191}, {"hamiltonian_mean", -5}};
+  r.measures = {{"rows", 200, ""}, {"windows", 191, ""}, {"hamiltonian_mean", -5, ""}};
   std::vector<Table> tables = filter_tables({r});
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_EQ(cell(tables[0], 0, "windows").value, 191);
@@ -100,12 +110,12 @@ TEST(FilterTables, OnlyWhatWasMeasured) {
   EXPECT_EQ(tables[0].notes, std::vector<std::string>{"exact: corrected: N 10"});
 
   for (const char* measure : kNoiseMeasures) {
-    r.statistics[std::string("noise.ax.") + measure + ".before"] = 0.3;
-    r.statistics[std::string("noise.ax.") + measure + ".after"] = 0.1;
-    r.statistics[std::string("noise.ax.") + measure + ".zero"] = 0.2;
+    r.measures.put({std::string("noise.ax.") + measure + ".before", 0.3, ""});
+    r.measures.put({std::string("noise.ax.") + measure + ".after", 0.1, ""});
+    r.measures.put({std::string("noise.ax.") + measure + ".zero", 0.2, ""});
   }
-  r.statistics["track.end.before"] = 1;
-  r.statistics["track.max.before"] = 2;
+  r.measures.put({"track.end.before", 1, ""});
+  r.measures.put({"track.max.before", 2, ""});
   tables = filter_tables({r});
   ASSERT_EQ(tables.size(), 3u);
   EXPECT_EQ(tables[0].id, "noise.exact");

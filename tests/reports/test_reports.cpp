@@ -48,7 +48,7 @@ RunRecord full_record() {
   r.random = true;
   r.known = KnownAnswer{98.1, 7.5, true, 1e-17};
   r.check = OptimalityRecord{"a bounded Gauss-Newton step", 1.0 / 3, 1e-8, 1};
-  r.statistics = {{"gap_exact_mean", 1.0 / 3}, {"windows", 189}};
+  r.measures = {{"gap_exact_mean", 1.0 / 3, "", Better::Lower, "a", true}, {"windows", 189, ""}};
   r.series = {{"nees", {1.0 / 3, 2}}};
   r.notes = {"a1 and b1 are barely determined", ""};
   r.context = {"some cpu", "g++ 12.2",      "Release",     "deadbeef", "0.1.0",
@@ -113,7 +113,7 @@ TEST(Record, EveryFieldSurvivesTheRoundTrip) {
   EXPECT_EQ(back.trace.at(1).evaluations, 50);
   EXPECT_EQ(back.notes, r.notes);
   EXPECT_EQ(back.group, r.group);
-  EXPECT_EQ(back.statistics, r.statistics);
+  EXPECT_EQ(back.measures.value("gap_exact_mean"), 1.0 / 3);
   EXPECT_EQ(back.series, r.series);
   EXPECT_EQ(back.budget, r.budget);
   EXPECT_EQ(back.context.command, r.context.command);
@@ -184,13 +184,13 @@ TEST(Record, EveryMissingFieldIsNamed) {
   for (const auto& field : complete.items()) {
     auto broken = complete;
     broken.erase(field.key());
-    if (field.key() == "notes" || field.key() == "group" || field.key() == "statistics" ||
+    if (field.key() == "notes" || field.key() == "group" || field.key() == "measures" ||
         field.key() == "series" || field.key() == "budget" || field.key() == "box" ||
         field.key() == "random" || field.key() == "known" || field.key() == "check") {
       const RunRecord without = read_back(broken.dump());
       EXPECT_EQ(without.notes.empty(), field.key() == "notes");
       EXPECT_EQ(without.group.empty(), field.key() == "group");
-      EXPECT_EQ(without.statistics.empty(), field.key() == "statistics");
+      EXPECT_EQ(without.measures.empty(), field.key() == "measures");
       EXPECT_EQ(without.series.empty(), field.key() == "series");
       EXPECT_EQ(without.budget.empty(), field.key() == "budget");
       EXPECT_EQ(without.box.empty(), field.key() == "box");
@@ -231,7 +231,7 @@ TEST(Record, WrongTypesNameThePathAndBothTypes) {
             "f: /kind: found \"guess\", expected \"run\", \"evaluation\" or \"skipped\"");
   EXPECT_EQ(with("/parameters/0/at_bound", "left"),
             "f: /parameters/0/at_bound: found \"left\", expected \"\", \"lower\" or \"upper\"");
-  EXPECT_THAT(with("/schema_version", 2), HasSubstr("f: /schema_version: found 2, expected 1"));
+  EXPECT_THAT(with("/schema_version", 3), HasSubstr("f: /schema_version: found 3, expected 1 to 2"));
   EXPECT_EQ(with("/unheard_of", 1), "accepted");
 }
 
@@ -253,7 +253,7 @@ TEST(Record, FileErrorsNameFileAndLine) {
               HasSubstr(":2: /label: found nan, expected a finite number"));
   EXPECT_THAT(reading_error("\n[]\n"), HasSubstr(":2: /: found an array of 0, expected an object"));
   EXPECT_THAT(reading_error("{\"schema_version\": 99}"),
-              HasSubstr(":1: /schema_version: found 99, expected 1"));
+              HasSubstr(":1: /schema_version: found 99, expected 1 to 2"));
   EXPECT_THAT(reading_error("{}"), HasSubstr(":1: /: found no key \"schema_version\""));
   EXPECT_THAT(reading_error("{\"cost\": 1e999}"), HasSubstr(":1: /cost: found 1e999"));
   EXPECT_EQ(reading_error("\n{\"cost\": 1, \"cost\": 2}\n"),

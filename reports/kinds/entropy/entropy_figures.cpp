@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
@@ -171,14 +172,14 @@ void add_window_figure(const std::vector<RunRecord>& records, const std::string&
                        Document& document) {
   std::map<std::string, std::vector<double>> counts;
   for (const RunRecord& r : records) {
-    const auto exact = r.statistics.find("hamiltonian_exact");
-    const auto found = r.statistics.find("hamiltonian_rounded");
-    if (exact == r.statistics.end() || found == r.statistics.end()) continue;
-    const double gap = exact->second - found->second;
+    const std::optional<double> exact = r.measures.value("hamiltonian_exact");
+    const std::optional<double> found = r.measures.value("hamiltonian_rounded");
+    if (!exact || !found) continue;
+    const double gap = *exact - *found;
     if (!std::isfinite(gap)) continue;
     std::vector<double>& list = counts[r.label];
     list.resize(kGapBins);
-    ++list[gap_bin(gap, exact->second)];
+    ++list[gap_bin(gap, *exact)];
   }
   if (counts.empty()) return;
   add_gap_histogram(counts, prefix + "window_gaps",

@@ -10,9 +10,8 @@ namespace odobench {
 namespace {
 
 std::optional<double> figure(const RunRecord& record, const std::string& name) {
-  const auto found = record.statistics.find(name);
-  if (found == record.statistics.end() || !std::isfinite(found->second)) return std::nullopt;
-  return found->second;
+  const std::optional<double> value = record.measures.value(name);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 Cell figure_cell(const std::optional<double>& value, int digits) {

@@ -1,5 +1,5 @@
 // Tables of runs of the relative-entropy filter (`bench filter`). Such a record has problem kFilterProblem,
-// as cost the mean of -H over the windows, and these statistics:
+// as cost the mean of -H over the windows, and these measures:
 //   rows, windows, iterations_mean, iterations_max, evaluations_mean, windows_per_second
 //   hamiltonian_mean, hamiltonian_min, hamiltonian_max
 //   gain_mean, gain_max            H - H without increments, the control
@@ -7,7 +7,8 @@
 //   below)
 //   gap_relaxed_mean, gap_relaxed_max             H_relaxed - H
 //   noise.CHANNEL.MEASURE.STAGE    CHANNEL encoder_component | encoder | ax | ay | theta, MEASURE rms | ratio
-//                                  | max, STAGE before | after | zero (after the filter without increments)
+//                                  | max, STAGE before | after | zero (after the filter without increments);
+//                                  of CHANNEL, in its unit
 //   track.end.STAGE, track.max.STAGE   m, distance of the dead-reckoned from the true position
 // and these series (see also kSignals and gap_bin_name):
 //   signal.width                          rows per bucket

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "reports/kinds/entropy/entropy_tables.hpp"
 
@@ -48,16 +49,13 @@ Table results_table(const std::vector<RunRecord>& records, bool full_digits) {
   for (const RunRecord& r : records) {
     std::vector<Cell> cells{text_cell(window_id(r)), text_cell(r.group), Cell{}, text_cell(r.label)};
     const auto cell = [&](const char* name, int digits) {
-      const auto found = r.statistics.find(name);
-      return found == r.statistics.end() ? Cell{} : significant_cell(found->second, digits);
+      const std::optional<double> value = r.measures.value(name);
+      return value ? significant_cell(*value, digits) : Cell{};
     };
-    if (const auto samples = r.statistics.find("samples"); samples != r.statistics.end())
-      cells[2] = count_cell(samples->second);
+    if (const auto samples = r.measures.value("samples")) cells[2] = count_cell(*samples);
     cells.push_back(cell("hamiltonian", 12));
-    cells.push_back(
-        r.statistics.count("hamiltonian") == 0
-            ? Cell{}
-            : significant_cell(r.statistics.at("hamiltonian_exact") - r.statistics.at("hamiltonian"), 4));
+    const auto exact = r.measures.value("hamiltonian_exact"), found = r.measures.value("hamiltonian");
+    cells.push_back(exact && found ? significant_cell(*exact - *found, 4) : Cell{});
     for (const char* name : {"r1", "sx1", "sy1", "ax12", "ay12"}) cells.push_back(cell(name, 8));
     const bool ran = r.kind != "skipped";
     cells.push_back(ran ? count_cell(static_cast<double>(r.iterations)) : Cell{});
@@ -91,16 +89,17 @@ struct Method {
 };
 
 void add(Method& method, const RunRecord& r) {
-  if (r.statistics.count("hamiltonian") == 0) {
+  const auto found = r.measures.value("hamiltonian"), rounded = r.measures.value("hamiltonian_rounded"),
+             exact = r.measures.value("hamiltonian_exact"), relaxed = r.measures.value("hamiltonian_relaxed");
+  if (!found || !rounded || !exact || !relaxed) {
     ++method.skipped;
     method.why_skipped = r.message;
     return;
   }
-  const double exact = r.statistics.at("hamiltonian_exact");
-  const double gap = exact - r.statistics.at("hamiltonian_rounded");
+  const double gap = *exact - *rounded;
   method.gap.add(gap);
-  method.at_optimum += gap <= kSameOptimum * std::abs(exact) ? 1 : 0;
-  method.relaxed_gap.add(r.statistics.at("hamiltonian_relaxed") - r.statistics.at("hamiltonian"));
+  method.at_optimum += gap <= kSameOptimum * std::abs(*exact) ? 1 : 0;
+  method.relaxed_gap.add(*relaxed - *found);
   method.iterations.add(static_cast<double>(r.iterations));
   method.evaluations.add(static_cast<double>(r.evaluations));
   method.seconds.add(r.seconds);

@@ -1,6 +1,6 @@
 // Tables of windows of the relative-entropy filter solved by several methods (`bench windows`). Such a record
 // has problem kWindowProblem, data set "FILE/ID", the group of the window, t as parameters, and unless it was
-// skipped the statistics
+// skipped the measures
 //   samples                                  N
 //   hamiltonian, r1, sx1, sy1, ax12, ay12    at t
 //   hamiltonian_rounded                      at t rounded to -1, 0, 1: the same for methods on the lattice

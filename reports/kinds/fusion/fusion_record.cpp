@@ -1,10 +1,12 @@
 #include "reports/kinds/fusion/fusion_record.hpp"
 
-#include <algorithm>
 #include <array>
+#include <string>
 
 namespace odobench {
 namespace {
+
+constexpr double kMostDof = 100;  // a pose has three; whatever a file says must fit an int
 
 struct Field {
   const char* name;
@@ -17,12 +19,8 @@ constexpr std::array<Field, 6> kSensorFields{{{"used", &FusionSensorRow::used},
                                               {"lower", &FusionSensorRow::lower},
                                               {"upper", &FusionSensorRow::upper}}};
 
-FusionSensorRow& sensor_called(const std::string& name, std::vector<FusionSensorRow>& sensors) {
-  const auto found = std::find_if(sensors.begin(), sensors.end(),
-                                  [&](const FusionSensorRow& sensor) { return sensor.name == name; });
-  if (found != sensors.end()) return *found;
-  sensors.emplace_back().name = name;
-  return sensors.back();
+std::string measure_name(const std::string& sensor, const char* figure) {
+  return "sensor." + sensor + "." + figure;
 }
 
 }  // namespace
@@ -31,19 +29,21 @@ void put_fusion_row(const FusionRow& row, RunRecord& record) {
   record.problem = kFusionProblem;
   record.kind = "evaluation";
   record.label = row.label;
-  record.statistics["rmse_position"] = row.rmse_position;
-  record.statistics["rmse_heading"] = row.rmse_heading;
+  record.measures.put({"rmse_position", row.rmse_position, "m"});
+  record.measures.put({"rmse_heading", row.rmse_heading, "rad"});
   if (!row.filtered) return;
   record.message = row.verdict;
-  record.statistics["nees_mean"] = row.mean_nees;
-  record.statistics["nees_inside"] = row.inside;
-  record.statistics["nees_lower"] = row.lower;
-  record.statistics["nees_upper"] = row.upper;
+  record.measures.put({"nees_mean", row.mean_nees, ""});
+  record.measures.put({"nees_inside", row.inside, ""});
+  record.measures.put({"nees_lower", row.lower, ""});
+  record.measures.put({"nees_upper", row.upper, ""});
   record.series["nees"] = row.nees;
   for (const FusionSensorRow& sensor : row.sensors) {
-    const std::string prefix = "sensor." + sensor.name + ".";
-    for (const Field& field : kSensorFields) record.statistics[prefix + field.name] = sensor.*field.member;
-    record.statistics[prefix + "dof"] = sensor.dof;
+    for (const Field& field : kSensorFields)
+      record.measures.put(
+          {measure_name(sensor.name, field.name), sensor.*field.member, "", Better::None, sensor.name});
+    const auto dof = static_cast<double>(sensor.dof);
+    record.measures.put({measure_name(sensor.name, "dof"), dof, "", Better::None, sensor.name});
   }
 }
 
@@ -51,27 +51,24 @@ FusionRow fusion_row(const RunRecord& record) {
   FusionRow row;
   row.label = record.label;
   row.verdict = record.message;
-  const auto figure = [&](const char* name, double& value) {
-    const auto found = record.statistics.find(name);
-    if (found != record.statistics.end()) value = found->second;
-    return found != record.statistics.end();
+  const Measures& measures = record.measures;
+  const auto figure = [&](const std::string& name, double& value) {
+    value = measures.value(name).value_or(value);
   };
   figure("rmse_position", row.rmse_position);
   figure("rmse_heading", row.rmse_heading);
-  row.filtered = figure("nees_mean", row.mean_nees);
+  row.filtered = measures.find("nees_mean") != nullptr;
+  figure("nees_mean", row.mean_nees);
   figure("nees_inside", row.inside);
   figure("nees_lower", row.lower);
   figure("nees_upper", row.upper);
   if (const auto nees = record.series.find("nees"); nees != record.series.end()) row.nees = nees->second;
-  const std::string prefix = "sensor.";
-  for (const auto& [key, value] : record.statistics) {
-    const std::size_t dot = key.rfind('.');
-    if (key.rfind(prefix, 0) != 0 || dot <= prefix.size()) continue;
-    FusionSensorRow& sensor = sensor_called(key.substr(prefix.size(), dot - prefix.size()), row.sensors);
-    const std::string name = key.substr(dot + 1);
-    if (name == "dof") sensor.dof = static_cast<int>(value);
-    for (const Field& field : kSensorFields)
-      if (name == field.name) sensor.*field.member = value;
+  for (const std::string& name : measures.subjects()) {
+    FusionSensorRow& sensor = row.sensors.emplace_back();
+    sensor.name = name;
+    for (const Field& field : kSensorFields) figure(measure_name(name, field.name), sensor.*field.member);
+    const double dof = measures.value(measure_name(name, "dof")).value_or(0);
+    if (dof >= 0 && dof <= kMostDof) sensor.dof = static_cast<int>(dof);
   }
   return row;
 }

@@ -27,8 +27,7 @@ std::vector<std::string> noted(const RunRecord& record, const std::string& prefi
 }
 
 double wanted_of(const RunRecord& record) {
-  const auto found = record.statistics.find("wanted");
-  return found == record.statistics.end() ? 0 : found->second;
+  return record.measures.value("wanted").value_or(0);
 }
 
 Table parameters_table(const RunRecord& record) {

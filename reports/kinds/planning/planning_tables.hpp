@@ -6,9 +6,9 @@
 //                                    added
 //               direction_deviations relative standard deviation along each of them; null: not at all (n)
 //               directions           unit vectors in the same order, one after the other (n * n)
-//   statistics  wanted               relative standard deviation asked for
+//   measures    wanted               relative standard deviation asked for
 //               determined           how many parameters reach it
-//               deviation.NAME       as in the series, of those that are determined at all
+//               deviation.NAME       as in the series, of each parameter NAME that is determined at all
 //   notes       "undetermined: COMBINATION", "proposed: DRIVE", and remarks for the first table
 #pragma once
 

@@ -12,17 +12,14 @@ namespace {
 constexpr int kArrivalDigits = 6;
 
 Cell cell_of(const RunRecord& record, const std::string& name) {
-  const auto found = record.statistics.find(name);
-  return found == record.statistics.end() ? Cell{} : fixed_cell(found->second, kArrivalDigits);
+  const std::optional<double> value = record.measures.value(name);
+  return value ? fixed_cell(*value, kArrivalDigits) : Cell{};
 }
 
 // Of one data set.
 std::optional<Table> arrival_table(const std::vector<RunRecord>& records) {
   std::vector<std::string> drives;
-  if (!records.empty())
-    for (const auto& [name, value] : records.front().statistics)
-      if (name.rfind(kArrivalPosition, 0) == 0)
-        drives.push_back(name.substr(std::string(kArrivalPosition).size()));
+  if (!records.empty()) drives = records.front().measures.subjects();
   if (drives.empty()) return std::nullopt;
   Table table{"verify.arrival",
               "How far from the reference's end the robot really stopped",

@@ -1,6 +1,6 @@
 // Tables of parameter sets judged on new drives (`bench verify`). Such a record has problem
 // kVerificationProblem, kind "evaluation", the errors of every drive of every repeat, and
-//   statistics  arrival_position.DRIVE [m], arrival_heading.DRIVE [rad]: mean distance of the true end from
+//   measures    arrival_position.DRIVE [m], arrival_heading.DRIVE [rad]: mean distance of the true end from
 //               the reference's
 #pragma once
 
