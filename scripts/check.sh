@@ -59,7 +59,7 @@ solvers/local                 solvers problems/problem.hpp
 solvers/population            solvers problems/problem.hpp
 solvers/lattice               solvers problems/problem.hpp problems/block_quadratic.hpp problems/lattice.hpp problems/instruction_set.hpp
 solvers/libraries             solvers problems/problem.hpp
-bench/console                 solvers/run.hpp reports/render
+bench/console                 solvers/run.hpp reports/render bench/studies/watcher.hpp
 bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue bench/console
 bench                         datasets/ problems/ solvers/ reports/ bench/

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -13,8 +12,9 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/catalogue/problem_factory.hpp"
 #include "bench/console/interrupt.hpp"
-#include "bench/console/progress.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
+#include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/cells.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/derivative_table.hpp"
@@ -99,62 +99,6 @@ void add_options(CLI::App& app, RunOptions& options) {
                "no progress and no remarks on standard error, only warnings and errors");
   app.footer(kRunExamples);
 }
-
-// Turns finished runs into records, on disc at once and in memory in the order of the cells.
-class Recorder final : public CellWatcher {
- public:
-  Recorder(const std::vector<LoadedProblem>& loaded, const CellList& cells, std::uint64_t base_seed,
-           const Budget& budget, const RunContext& context, RecordFile* file, ProgressLine& progress)
-      : loaded_(loaded),
-        cells_(cells),
-        base_seed_(base_seed),
-        budget_(budget),
-        context_(context),
-        file_(file),
-        progress_(progress),
-        records_(cells.size()) {}
-
-  void started(std::size_t cell) override { progress_.started(cell); }
-  void progressed(std::size_t cell, const Progress& progress) override {
-    progress_.progressed(cell, progress);
-  }
-  void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    const RunCell what = cells_[cell];
-    auto record = std::make_unique<RunRecord>(
-        run_record(loaded_[what.problem], what, base_seed_, budget_, result, context_, time_utc));
-    {
-      const std::lock_guard lock(mutex_);
-      if (file_ != nullptr) file_->append(*record);
-      in_order_ = in_order_ && cell == finished_;
-      ++finished_;
-      records_[cell] = std::move(record);
-    }
-    progress_.finished(cell);
-  }
-
-  // Of the cells that ran, in their order, moved behind `list`.
-  void move_to(std::vector<RunRecord>& list) {
-    list.reserve(list.size() + finished_);
-    for (std::unique_ptr<RunRecord>& record : records_) {
-      if (record) list.push_back(std::move(*record));
-      record.reset();
-    }
-  }
-  bool in_order() const { return in_order_; }
-
- private:
-  const std::vector<LoadedProblem>& loaded_;
-  const CellList& cells_;
-  const std::uint64_t base_seed_;
-  const Budget& budget_;
-  const RunContext& context_;
-  RecordFile* file_;
-  ProgressLine& progress_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<RunRecord>> records_;
-  std::size_t finished_ = 0;
-  bool in_order_ = true;
-};
 
 bool any_result(const std::vector<RunRecord>& records) {
   return std::any_of(records.begin(), records.end(),
@@ -260,15 +204,23 @@ ExitCode run_command(const RunOptions& options) {
     for (const RunRecord& r : records) file->append(r);
   }
 
-  ProgressLine progress(!options.quiet, cells.size(), [&](std::size_t i) {
+  TerminalWatcher watcher(options.quiet);
+  const auto label = [&](std::size_t i) {
     const RunCell cell = cells[i];
     return loaded.size() == 1 ? cell.label() : loaded[cell.problem].name() + " " + cell.label();
-  });
-  Recorder recorder(loaded, cells, plan.base_seed, options.budget, context, file.get(), progress);
+  };
+  CellRecorder recorder(
+      cells,
+      [&](const RunCell& cell, const Result& result, const std::string& time_utc) {
+        return run_record(loaded[cell.problem], cell, plan.base_seed, options.budget, result, context,
+                          time_utc);
+      },
+      file.get(), watcher);
   std::vector<Problem> problems;
   for (const LoadedProblem& one : loaded) problems.push_back(one.problem);
+  watcher.runs_begin(cells.size(), label);
   run_cells(problems, cells, options.budget, threads, InterruptGuard::flag(), recorder);
-  progress.clear();
+  watcher.runs_end();
   const bool interrupted = InterruptGuard::flag().load();
   recorder.move_to(records);
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -17,8 +16,9 @@
 #include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
-#include "bench/console/progress.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
+#include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/cells.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/records.hpp"
@@ -79,6 +79,7 @@ void add_options(CLI::App& app, WindowsOptions& o) {
 struct LoadedWindow {
   EntropyWindow window;
   LoadedProblem loaded;
+  std::string dataset, sha256;              // name and check sum of the file
   double zero = 0, exact = 0, relaxed = 0;  // H
 };
 
@@ -113,7 +114,7 @@ void require_finite(const std::vector<EntropyWindow>& windows, const std::string
 }
 
 LoadedWindow loaded_window(const EntropyWindow& window) {
-  LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", "", ""}};
+  LoadedWindow w{window, {Problem(WindowProblem(window)), nullptr, std::nullopt, "", "", ""}, "", ""};
   const BlockQuadratic& cost = *w.loaded.problem.block_quadratic();
   EntropyState state;
   w.zero = value_at(window, w.loaded.problem.start(), state);
@@ -145,68 +146,21 @@ void add_measures(const LoadedWindow& w, const Vector& t, RunRecord& record) {
   record.measures.put({"hamiltonian_relaxed", w.relaxed, ""});
 }
 
+// `record`: of the run, without what it says of the window.
+RunRecord window_record(const LoadedWindow& w, const Result& result, RunRecord record) {
+  record.dataset = w.dataset;
+  record.dataset_sha256 = w.sha256;
+  record.group = w.window.group;
+  record.statistics["samples"] = w.window.constants.samples;
+  if (result.usable()) add_statistics(w, result.x, record);
+  return record;
+}
+
 CellList plan_cells(const CellPlan& plan, std::vector<std::string>& notes) {
   CellList cells;
   cells.add(plan, 0, notes);
   return cells;
 }
-
-// Records of the cells of one window, on disc at once and in memory in the order of the cells.
-class WindowRecorder final : public CellWatcher {
- public:
-  WindowRecorder(const LoadedWindow& window, const std::string& dataset, const std::string& sha256,
-                 const CellList& cells, std::uint64_t base_seed, const Budget& budget,
-                 const RunContext& context, RecordFile* file, ProgressLine& progress, std::size_t first)
-      : window_(window),
-        dataset_(dataset),
-        sha256_(sha256),
-        cells_(cells),
-        base_seed_(base_seed),
-        budget_(budget),
-        context_(context),
-        file_(file),
-        progress_(progress),
-        first_(first),
-        records_(cells.size()) {}
-
-  void started(std::size_t cell) override { progress_.started(first_ + cell); }
-  void progressed(std::size_t cell, const Progress& progress) override {
-    progress_.progressed(first_ + cell, progress);
-  }
-  void finished(std::size_t cell, const Result& result, const std::string& time_utc) override {
-    RunRecord r = run_record(window_.loaded, cells_[cell], base_seed_, budget_, result, context_, time_utc);
-    r.dataset = dataset_;
-    r.dataset_sha256 = sha256_;
-    r.group = window_.window.group;
-    r.measures.put({"samples", static_cast<double>(window_.window.constants.samples), ""});
-    if (result.usable()) add_measures(window_, result.x, r);
-    {
-      const std::lock_guard lock(mutex_);
-      if (file_ != nullptr) file_->append(r);
-      records_[cell] = std::move(r);
-    }
-    progress_.finished(first_ + cell);
-  }
-
-  // Of the cells that ran, in their order, moved behind `list`.
-  void move_to(std::vector<RunRecord>& list) {
-    for (auto& record : records_)
-      if (record) list.push_back(std::move(*record));
-  }
-
- private:
-  const LoadedWindow& window_;
-  const std::string dataset_, sha256_;
-  const CellList& cells_;
-  const std::uint64_t base_seed_;
-  const Budget& budget_;
-  const RunContext& context_;
-  RecordFile* file_;
-  ProgressLine& progress_;
-  const std::size_t first_;
-  std::mutex mutex_;
-  std::vector<std::optional<RunRecord>> records_;
-};
 
 std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std::vector<std::string>& only) {
   if (only.empty()) return windows;
@@ -279,21 +233,28 @@ ExitCode windows_command(const WindowsOptions& options) {
     for (const std::string& text : notes) note(text);
 
   std::vector<std::string> ignored;
-  ProgressLine progress(!options.quiet, windows.size() * per_window, [&](std::size_t i) {
+  TerminalWatcher watcher(options.quiet);
+  const auto label = [&](std::size_t i) {
     return windows[i / per_window].id + " " + of_each[i % per_window].label();
-  });
+  };
+  watcher.runs_begin(windows.size() * per_window, label);
   std::vector<RunRecord> records;
   for (std::size_t i = 0; i < windows.size() && !InterruptGuard::flag().load(); ++i) {
-    const LoadedWindow window = load(windows[i], options.file);
+    LoadedWindow window = load(windows[i], options.file);
     if (InterruptGuard::flag().load()) break;  // what results are measured against is not known
-    plan.dataset = stem + "/" + windows[i].id;
+    plan.dataset = window.dataset = stem + "/" + windows[i].id;
+    window.sha256 = sha256;
     const CellList cells = plan_cells(plan, ignored);
-    WindowRecorder recorder(window, plan.dataset, sha256, cells, plan.base_seed, options.budget, context,
-                            file.get(), progress, i * per_window);
+    const auto make = [&](const RunCell& cell, const Result& result, const std::string& time_utc) {
+      return window_record(
+          window, result,
+          run_record(window.loaded, cell, plan.base_seed, options.budget, result, context, time_utc));
+    };
+    CellRecorder recorder(cells, make, file.get(), watcher, i * per_window);
     run_cells({window.loaded.problem}, cells, options.budget, threads, InterruptGuard::flag(), recorder);
     recorder.move_to(records);
   }
-  progress.clear();
+  watcher.runs_end();
   if (records.empty()) throw Interruption();
   const bool machine = format == Format::Json || format == Format::Csv;
   if (file) save_tables(window_tables(records, false), options.out);

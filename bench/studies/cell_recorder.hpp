@@ -1,0 +1,48 @@
+// Finished runs become records: on disc at once, in memory in the order of the cells.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "bench/studies/cells.hpp"
+#include "bench/studies/records.hpp"
+#include "bench/studies/watcher.hpp"
+
+namespace odobench {
+
+class CellRecorder final : public CellWatcher {
+ public:
+  // The record of a cell; called from several threads at a time.
+  using MakeRecord =
+      std::function<RunRecord(const RunCell& cell, const Result& result, const std::string& time_utc)>;
+
+  // `file` null: records stay in memory. `first`: number of the first cell among the runs that the watcher
+  // is told of. All but `make` outlive the recorder.
+  CellRecorder(const CellList& cells, MakeRecord make, RecordFile* file, Watcher& watcher,
+               std::size_t first = 0);
+
+  void started(std::size_t cell) override;
+  void progressed(std::size_t cell, const Progress& progress) override;
+  // Throws what RecordFile::append() does.
+  void finished(std::size_t cell, const Result& result, const std::string& time_utc) override;
+
+  // Of the cells that ran, in their order, moved behind `list`.
+  void move_to(std::vector<RunRecord>& list);
+  // Whether the cells ended in their order, so that the file has the records as the memory has.
+  bool in_order() const { return in_order_; }
+
+ private:
+  const CellList& cells_;
+  const MakeRecord make_;
+  RecordFile* file_;
+  Watcher& watcher_;
+  const std::size_t first_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<RunRecord>> records_;
+  std::size_t finished_ = 0;
+  bool in_order_ = true;
+};
+
+}  // namespace odobench
