@@ -20,6 +20,8 @@ class Stop {
   explicit Stop(const std::atomic<bool>& flag) : flag_(&flag) {}
 
   bool requested() const { return flag_ != nullptr && flag_->load(std::memory_order_relaxed); }
+  // What the copies watch, for loops that ask it themselves; null: nothing.
+  const std::atomic<bool>* flag() const { return flag_; }
   // Throws Interruption once the flag is set.
   void check() const {
     if (requested()) throw Interruption();

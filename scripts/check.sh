@@ -61,9 +61,13 @@ solvers/lattice               solvers problems/problem.hpp problems/block_quadra
 solvers/libraries             solvers problems/problem.hpp
 bench/console                 solvers/run.hpp reports/render bench/studies/watcher.hpp
 bench/catalogue               datasets/ problems/ solvers/
-bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue bench/console
+bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue
+bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/
-tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies
+tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/
 '
 
 check_includes() {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -17,7 +16,6 @@ namespace odobench {
 namespace {
 
 constexpr int kPlainWidth = 110;
-constexpr std::array kSaved{Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex};
 
 void line(const char* kind, const std::string& text) {
   const std::string whole = fmt::format("bench: {}{}\n", kind, one_line_message(text));
@@ -48,19 +46,6 @@ void write_result(const std::string& path, std::string_view bytes, Existing exis
     print_text(std::string(bytes));
   else
     write_file(path, bytes, existing);
-}
-
-std::vector<std::filesystem::path> table_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const Format format : kSaved) files.push_back(folder / ("tables." + file_extension(format)));
-  return files;
-}
-
-void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder) {
-  FileTransaction files;
-  for (const Format format : kSaved)
-    files.add(folder / ("tables." + file_extension(format)), render(tables, format, {kPlainWidth, false}));
-  files.commit();
 }
 
 void warn(const std::string& text) {

@@ -1,7 +1,6 @@
-// Tables to standard output and to files.
+// Tables and texts to standard output, remarks to standard error.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,11 +18,6 @@ void print_text(const std::string& text);
 
 // `bytes` to a file (write_file), or to standard output where `path` is "-".
 void write_result(const std::string& path, std::string_view bytes, Existing existing);
-
-// tables.txt, .md, .csv, .json and .tex in a folder.
-std::vector<std::filesystem::path> table_files(const std::filesystem::path& folder);
-// Writes them, all or none. Throws DataError.
-void save_tables(const std::vector<Table>& tables, const std::filesystem::path& folder);
 
 // One line on standard error: "bench: warning: ...", escaped and of bounded length (one_line_message).
 void warn(const std::string& text);

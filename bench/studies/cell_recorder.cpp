@@ -4,11 +4,11 @@
 
 namespace odobench {
 
-CellRecorder::CellRecorder(const CellList& cells, MakeRecord make, RecordFile* file, Watcher& watcher,
+CellRecorder::CellRecorder(const CellList& cells, MakeRecord make, RunFolder& folder, Watcher& watcher,
                            std::size_t first)
     : cells_(cells),
       make_(std::move(make)),
-      file_(file),
+      folder_(folder),
       watcher_(watcher),
       first_(first),
       records_(cells.size()) {}
@@ -25,7 +25,7 @@ void CellRecorder::finished(std::size_t cell, const Result& result, const std::s
   auto record = std::make_unique<RunRecord>(make_(cells_[cell], result, time_utc));
   {
     const std::lock_guard lock(mutex_);
-    if (file_ != nullptr) file_->append(*record);
+    folder_.append(*record);
     in_order_ = in_order_ && cell == finished_;
     ++finished_;
     records_[cell] = std::move(record);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/studies/cells.hpp"
-#include "bench/studies/records.hpp"
+#include "bench/studies/run_folder.hpp"
 #include "bench/studies/watcher.hpp"
 
 namespace odobench {
@@ -18,14 +18,14 @@ class CellRecorder final : public CellWatcher {
   using MakeRecord =
       std::function<RunRecord(const RunCell& cell, const Result& result, const std::string& time_utc)>;
 
-  // `file` null: records stay in memory. `first`: number of the first cell among the runs that the watcher
+  // `folder`: open; records go there, too. `first`: number of the first cell among the runs that the watcher
   // is told of. All but `make` outlive the recorder.
-  CellRecorder(const CellList& cells, MakeRecord make, RecordFile* file, Watcher& watcher,
+  CellRecorder(const CellList& cells, MakeRecord make, RunFolder& folder, Watcher& watcher,
                std::size_t first = 0);
 
   void started(std::size_t cell) override;
   void progressed(std::size_t cell, const Progress& progress) override;
-  // Throws what RecordFile::append() does.
+  // Throws what RunFolder::append() does.
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override;
 
   // Of the cells that ran, in their order, moved behind `list`.
@@ -36,7 +36,7 @@ class CellRecorder final : public CellWatcher {
  private:
   const CellList& cells_;
   const MakeRecord make_;
-  RecordFile* file_;
+  RunFolder& folder_;
   Watcher& watcher_;
   const std::size_t first_;
   std::mutex mutex_;

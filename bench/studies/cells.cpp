@@ -6,6 +6,7 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <iterator>
 #include <mutex>
@@ -24,16 +25,16 @@ namespace {
 class Dispatcher {
  public:
   Dispatcher(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
-             const std::atomic<bool>& interrupt, CellWatcher& watcher)
+             const Stop& stop, CellWatcher& watcher)
       : problems_(problems),
         cells_(cells),
         budget_(budget),
         threads_(threads),
-        interrupt_(interrupt),
+        asked_(stop),
         watcher_(watcher) {}
 
   void work() {
-    while (!stop_.load() && !interrupt_.load()) {
+    while (!stop_.load() && !asked_.requested()) {
       const std::size_t cell = next_.fetch_add(1);
       if (cell >= cells_.size()) return;
       try {
@@ -56,7 +57,7 @@ class Dispatcher {
     SolveOptions options;
     options.budget = budget_;
     options.seed = cell.seed;
-    options.interrupt = &interrupt_;
+    options.interrupt = asked_.flag();
     options.threads = threads_;
     options.polish = cell.polish;
     options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
@@ -72,7 +73,7 @@ class Dispatcher {
   const CellList& cells_;
   const Budget& budget_;
   const int threads_;
-  const std::atomic<bool>& interrupt_;
+  const Stop asked_;
   CellWatcher& watcher_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
@@ -150,8 +151,8 @@ RunCell CellList::operator[](std::size_t index) const {
 }
 
 void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
-               const std::atomic<bool>& interrupt, CellWatcher& watcher) {
-  Dispatcher dispatcher(problems, cells, budget, threads, interrupt, watcher);
+               const Stop& stop, CellWatcher& watcher) {
+  Dispatcher dispatcher(problems, cells, budget, threads, stop, watcher);
   if (threads <= 1) {
     dispatcher.work();
   } else {

@@ -1,10 +1,10 @@
 // The cells of a comparison (solver x repetition), their seeds and starts, and running them side by side.
 #pragma once
 
-#include <atomic>
 #include <string>
 #include <vector>
 
+#include "base/stop.hpp"
 #include "problems/problem.hpp"
 #include "solvers/solve.hpp"
 
@@ -75,10 +75,10 @@ class CellWatcher {
 };
 
 // Runs the cells on `threads` threads, begun in their order; a population solver's batches use threads that
-// have no cell left. Results do not depend on `threads`. After `interrupt` no further cell begins, and one
+// have no cell left. Results do not depend on `threads`. After `stop` no further cell begins, and one
 // that had not evaluated anything is not reported. After an
 // exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
 void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
-               const std::atomic<bool>& interrupt, CellWatcher& watcher);
+               const Stop& stop, CellWatcher& watcher);
 
 }  // namespace odobench

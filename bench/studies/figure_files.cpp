@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "base/files.hpp"
-#include "bench/console/interrupt.hpp"
 #include "reports/page/web_assets.hpp"
 
 extern char** environ;  // NOLINT: POSIX has no header for it
@@ -93,7 +92,8 @@ std::string specifications(const Document& document) {
 
 }  // namespace
 
-std::vector<fs::path> write_figures(const Document& document, const fs::path& folder, Existing existing) {
+std::vector<fs::path> write_figures(const Document& document, const fs::path& folder, Existing existing,
+                                    Watcher& watcher, const Stop& stop) {
   if (figures(document).empty()) return {};
   if (!has_chart_library())
     throw std::runtime_error(
@@ -101,7 +101,7 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
                     "npm, configure "
                     "and build again",
                     why_no_charts()));
-  InterruptGuard::remember();
+  watcher.results_begin();
   const PrivateFolder work;
   for (int k = 0; k < kChartLibraryFiles; ++k) work.write(chart_library(k).name, chart_library(k).text);
   work.write("theme.js", web_file("theme.js"));
@@ -110,7 +110,7 @@ std::vector<fs::path> write_figures(const Document& document, const fs::path& fo
   const std::string log = work / "log";
   const fs::path drawn = work / "drawn";
   fs::create_directory(drawn);
-  const int code = run({"node", script, drawn.string(), list}, log, InterruptGuard::stop());
+  const int code = run({"node", script, drawn.string(), list}, log, stop);
   if (code == 127) throw std::runtime_error("figures as SVG files need node: install nodejs (18 or newer)");
   if (code != 0) {
     const std::string said = read_file(log);

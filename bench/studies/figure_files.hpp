@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "base/files.hpp"
+#include "base/stop.hpp"
+#include "bench/studies/watcher.hpp"
 #include "reports/figures/document.hpp"
 
 namespace odobench {
@@ -15,6 +17,7 @@ namespace odobench {
 // with the chart library of this binary. Throws std::runtime_error with one line when there is no node, no
 // chart library, or a figure cannot be drawn.
 std::vector<std::filesystem::path> write_figures(const Document& document,
-                                                 const std::filesystem::path& folder, Existing existing);
+                                                 const std::filesystem::path& folder, Existing existing,
+                                                 Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench

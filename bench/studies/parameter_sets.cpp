@@ -13,7 +13,6 @@
 #include "base/names.hpp"
 #include "base/range.hpp"
 #include "bench/catalogue/option_values.hpp"
-#include "bench/console/table_output.hpp"
 
 namespace odobench {
 namespace {
@@ -59,7 +58,7 @@ std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters
   return sets;
 }
 
-void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
+void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher) {
   std::string list;
   const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -70,7 +69,8 @@ void warn_outside(const LoadedProblem& loaded, const ParameterSet& set) {
       list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
                           parameters[i].lower, parameters[i].upper);
   }
-  if (!list.empty()) warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
+  if (!list.empty())
+    watcher.warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
 }
 
 }  // namespace
@@ -123,12 +123,12 @@ void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets) {
 }
 
 std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
-                                              const std::vector<std::string>& lists) {
+                                              const std::vector<std::string>& lists, Watcher& watcher) {
   const ParameterNames names = parameter_names(loaded);
   std::vector<ParameterSet> sets;
   for (const std::string& source : split_sources(lists))
     for (ParameterSet& set : read_parameters(names, source)) add_parameter_set(std::move(set), sets);
-  for (const ParameterSet& set : sets) warn_outside(loaded, set);
+  for (const ParameterSet& set : sets) warn_outside(loaded, set, watcher);
   return sets;
 }
 

@@ -6,15 +6,10 @@
 #include <map>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
-#include "base/files.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
-#include "bench/catalogue/option_values.hpp"
-#include "bench/console/interrupt.hpp"
-#include "bench/console/table_output.hpp"
 #include "bench/studies/context.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "problems/information/identifiability.hpp"
@@ -191,63 +186,7 @@ RunRecord study_record(const std::string& problem, const std::string& dataset, c
   return record;
 }
 
-namespace {
-
-// What belongs to the records of a folder, runs.jsonl first.
-std::vector<std::filesystem::path> result_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files = table_files(folder);
-  files.insert(files.begin(), folder / "runs.jsonl");
-  files.push_back(folder / "tracks" / "tracks.json");
-  return files;
-}
-
-}  // namespace
-
-void require_no_records(const std::filesystem::path& folder, bool overwrite, const char* option) {
-  require_own_folder(folder / "tracks");
-  for (const std::filesystem::path& file : result_files(folder)) {
-    require_replaceable(file);
-    std::error_code error;
-    if (!overwrite && std::filesystem::exists(file, error))
-      throw std::invalid_argument(
-          fmt::format("{}={}: it holds {} already; choose another folder or give --overwrite", option,
-                      shown_path(folder), file.lexically_relative(folder).string()));
-  }
-}
-
-RecordFile::RecordFile(const std::filesystem::path& folder, bool overwrite, const char* option) {
-  try {
-    file_ = std::make_unique<LineFile>(folder / "runs.jsonl", existing_files(overwrite));
-  } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(fmt::format("{}={}: {}", option, shown_path(folder), e.what()));
-  }
-  if (!overwrite) return;
-  // What was made of the records that are gone would tell of them until the new ones are complete.
-  for (const std::filesystem::path& file : result_files(folder)) {
-    std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
-    if (file != file_->path()) std::filesystem::remove(file, error);
-  }
-}
-
-void RecordFile::append(const RunRecord& record) {
-  file_->append(to_json_line(record));
-}
-
-void RecordFile::replace(const std::vector<RunRecord>& records) {
-  std::string text;
-  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
-  file_->replace(text);
-}
-
-void save_study(const std::filesystem::path& folder, bool overwrite, const std::vector<RunRecord>& records,
-                const std::vector<Table>& tables, const char* option) {
-  InterruptGuard::remember();
-  RecordFile file(folder, overwrite, option);
-  for (const RunRecord& record : records) file.append(record);
-  save_tables(tables, folder);
-}
-
-std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
+std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs, Watcher& watcher) {
   std::vector<RunRecord> records;
   std::set<std::string> seen;  // check sums: two runs never agree in every digit of their times
   std::size_t repeated = 0;
@@ -264,7 +203,8 @@ std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs) {
     }
   }
   if (repeated > 0)
-    note(fmt::format("{} record{} read twice and counted once", repeated, repeated == 1 ? " was" : "s were"));
+    watcher.note(
+        fmt::format("{} record{} read twice and counted once", repeated, repeated == 1 ? " was" : "s were"));
   if (records.empty())
     throw DataError(fmt::format("{}: found no run record, expected at least one",
                                 shown(fmt::format("{}", fmt::join(runs, ", ")))));

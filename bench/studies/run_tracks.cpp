@@ -2,11 +2,9 @@
 
 #include <utility>
 
-#include "base/files.hpp"
 #include "reports/statistics/row_groups.hpp"
 
 namespace odobench {
-namespace fs = std::filesystem;
 
 void append_track(const PoseTrack& track, PoseColumns& columns) {
   columns.x.insert(columns.x.end(), track.x.begin(), track.x.end());
@@ -27,9 +25,7 @@ TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loade
   return set;
 }
 
-void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records,
-                     const fs::path& run_directory) {
-  if (!loaded.calibration) return;
+TrackSet run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records) {
   TrackSet set = reference_tracks(loaded.name(), loaded);
   for (const Comparison& comparison : compare(records)) {
     if (comparison.problem != loaded.name()) continue;
@@ -45,13 +41,7 @@ void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& 
       set.tracks.push_back(std::move(track));
     }
   }
-  save_tracks(set, run_directory);
-}
-
-void save_tracks(const TrackSet& set, const fs::path& run_directory) {
-  FileTransaction transaction;
-  for (const auto& [file, bytes] : track_files(set)) transaction.add(run_directory / file, bytes);
-  transaction.commit();
+  return set;
 }
 
 }  // namespace odobench

@@ -1,8 +1,6 @@
 // The tracks of results, kept in a run directory beside the records (reports/records/tracks.hpp).
 #pragma once
 
-#include <filesystem>
-#include <span>
 #include <vector>
 
 #include "bench/catalogue/problem_factory.hpp"
@@ -17,10 +15,7 @@ TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loade
 void append_track(const PoseTrack& track, PoseColumns& columns);
 
 // The track of the run that the tables show of each label (the median by J), integrated from its parameters.
-// `records`: of this problem; others have none. Writes nothing unless it is a calibration.
-void save_run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records,
-                     const std::filesystem::path& run_directory);
-
-void save_tracks(const TrackSet& set, const std::filesystem::path& run_directory);
+// `loaded`: a calibration; records of other problems have none.
+TrackSet run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& records);
 
 }  // namespace odobench

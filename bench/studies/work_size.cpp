@@ -4,8 +4,6 @@
 
 #include <stdexcept>
 
-#include "bench/console/table_output.hpp"
-
 namespace odobench {
 
 void require_size(const WorkSize& size) {
@@ -20,14 +18,14 @@ void require_size(const WorkSize& size) {
   refuse(size.made, kMostSamplesMade, "");
 }
 
-void announce(const std::string& text, double seconds, bool quiet) {
-  if (quiet || seconds < kLong_s) return;
-  note(fmt::format("{}: {:.2g} minutes of one processor", text, seconds / 60));
+void announce(const std::string& text, double seconds, Watcher& watcher) {
+  if (seconds < kLong_s) return;
+  watcher.note(fmt::format("{}: {:.2g} minutes of one processor", text, seconds / 60));
 }
 
-void announce(const WorkSize& size, bool quiet) {
+void announce(const WorkSize& size, Watcher& watcher) {
   announce(fmt::format("{}: about {:.2g} samples", size.what, size.made), size.made * kSecondsPerSample,
-           quiet);
+           watcher);
 }
 
 }  // namespace odobench

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "bench/studies/watcher.hpp"
+
 namespace odobench {
 
 // Samples of simulated recordings: ticks of the odometry and of the motion capture. Measured on one core of
@@ -27,8 +29,8 @@ struct WorkSize {
 // limits.
 void require_size(const WorkSize& size);
 
-// The note on standard error for work of that many seconds, if it is long, unless `quiet`.
-void announce(const std::string& text, double seconds, bool quiet);
-void announce(const WorkSize& size, bool quiet);
+// A note for work of that many seconds, if it is long.
+void announce(const std::string& text, double seconds, Watcher& watcher);
+void announce(const WorkSize& size, Watcher& watcher);
 
 }  // namespace odobench

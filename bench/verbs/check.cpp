@@ -9,6 +9,7 @@
 #include "base/files.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
@@ -39,7 +40,8 @@ namespace {
 
 ExitCode check_command(const CheckOptions& options) {
   const Format format = parse_format(options.format);
-  const std::vector<RunRecord> records = read_all_records(options.runs);
+  TerminalWatcher watcher;
+  const std::vector<RunRecord> records = read_all_records(options.runs, watcher);
   if (options.update) {
     Baseline before;
     if (std::filesystem::exists(options.baseline)) before = read_baseline(options.baseline);

@@ -10,6 +10,7 @@
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "reports/regression/changes.hpp"
@@ -150,7 +151,9 @@ ExitCode compare_command(const CompareVerbOptions& a) {
   options.alpha = a.alpha;
   options.gate_foreign_times = a.gate_foreign_times;
   options.random = draws_random_numbers;
-  const std::vector<RunRecord> before = read_all_records({a.before}), after = read_all_records({a.after});
+  TerminalWatcher watcher;
+  const std::vector<RunRecord> before = read_all_records({a.before}, watcher);
+  const std::vector<RunRecord> after = read_all_records({a.after}, watcher);
   const std::vector<std::string> known = metric_names(before, after);
   for (const Gate& gate : options.gates) {
     require_known("--fail-on", gate.metric, known);

@@ -2,308 +2,41 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <deque>
-#include <filesystem>
-#include <stdexcept>
-
-#include "base/error.hpp"
-#include "base/sha256.hpp"
-#include "base/stop.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
-#include "bench/console/progress.hpp"
 #include "bench/console/table_output.hpp"
-#include "bench/studies/context.hpp"
-#include "bench/studies/entropy_output.hpp"
-#include "bench/studies/entropy_search.hpp"
-#include "bench/studies/entropy_signals.hpp"
-#include "bench/studies/entropy_statistics.hpp"
-#include "bench/studies/records.hpp"
-#include "bench/verbs/common_options.hpp"
+#include "bench/console/terminal_watcher.hpp"
+#include "bench/studies/entropy/filter_study.hpp"
+#include "bench/studies/run_folder.hpp"
 #include "bench/verbs/filter_options.hpp"
-#include "solvers/lattice/ternary_search.hpp"
-#include "solvers/registry.hpp"
+#include "reports/kinds/entropy/entropy_tables.hpp"
 
 namespace odobench {
 namespace {
 
-namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-// A row of the data with its truth.
-struct FilterInput {
-  FilterRow row;
-  FilterTruth truth;
-};
-
-// Data and truth in step with each other, without the rows at the end that are not to be used.
-class InputRows {
- public:
-  InputRows(const EntropyOptions& options, const FilterSetup& setup, const std::atomic<bool>& interrupt)
-      : unused_(static_cast<std::size_t>(setup.rows_unused)),
-        data_(options.data, with_interrupt(setup, interrupt)) {
-    if (options.truth.empty()) return;
-    truth_.emplace(options.truth, setup.truth_columns, &interrupt);
-    FilterTruth passed;
-    for (std::int64_t i = 0; i < data_.passed_over(); ++i)
-      if (!truth_->next(passed) && !truth_->interrupted()) truth_->too_short(data_.file());
-  }
-
-  const FilterRunReader& data() const { return data_; }
-  bool has_truth() const { return truth_.has_value(); }
-  bool interrupted() const { return data_.interrupted() || (truth_ && truth_->interrupted()); }
-
-  bool next(FilterInput& input) {
-    while (ahead_.size() <= unused_)
-      if (!read()) return false;
-    input = ahead_.front();
-    ahead_.pop_front();
-    return true;
-  }
-
- private:
-  static FilterRunOptions with_interrupt(const FilterSetup& setup, const std::atomic<bool>& interrupt) {
-    FilterRunOptions options = setup.reader;
-    options.interrupt = &interrupt;
-    return options;
-  }
-
-  bool read() {
-    FilterInput input;
-    const bool any = data_.next(input.row);
-    if (truth_ && !interrupted()) {
-      const bool known = truth_->next(input.truth);
-      if (interrupted()) return false;
-      if (any && !known) truth_->too_short(data_.file());
-      if (!any && known) truth_->too_long(data_.file());
-    }
-    if (any) ahead_.push_back(input);
-    return any;
-  }
-
-  const std::size_t unused_;
-  FilterRunReader data_;
-  std::optional<FilterTruthReader> truth_;
-  std::deque<FilterInput> ahead_;
-};
-
-// Everything that happens to a window.
-class FilterRun {
- public:
-  FilterRun(const EntropyOptions& options, const FilterSetup& setup, InstructionSet kernel,
-            const FilterRunReader& data, const std::atomic<bool>& interrupt)
-      : setup_(setup),
-        file_name_(data.file()),
-        profile_(setup.constants),
-        method_(
-            make_filter_method(options.solver, profile_, options.budget, options.seed, kernel, interrupt)),
-        filter_(profile_, method_.search.get()),
-        converter_(setup),
-        noise_(setup),
-        signals_(!options.truth.empty()),
-        rows_(static_cast<std::size_t>(setup.constants.samples)),
-        truths_(rows_count()),
-        times_(rows_count()),
-        lines_(rows_count()),
-        with_truth_(!options.truth.empty()),
-        interrupt_(interrupt) {
-    if (!options.out.empty())
-      file_.emplace(options.out, existing_files(options.overwrite), setup.constants.samples, data.has_time(),
-                    setup.rotation_sign);
-    if (!options.gap) return;
-    exact_search_ = ternary_exact(
-        profile_.blocks(), [&interrupt] { return interrupt.load(); }, kernel);
-    relaxed_search_ = box_relaxation(profile_.blocks());
-    exact_.emplace(profile_, exact_search_.get());
-    relaxed_.emplace(profile_, relaxed_search_.get());
-  }
-
-  // False when an interruption came in the middle of the window.
-  bool push(const FilterInput& input) {
-    ++count_;
-    const ConvertedRow& row = converter_.convert(input.row);
-    rows_.push(row);
-    times_.push(input.row.time_s);
-    lines_.push(input.row.line);
-    if (with_truth_) truths_.push(converter_.convert(input.truth));
-    if (method_.registry != nullptr) method_.registry->observe(row.sample);
-    const FilterOutput* output = filter_.push(row.sample);
-    const FilterOutput* exact = exact_ ? exact_->push(row.sample) : nullptr;
-    const FilterOutput* relaxed = relaxed_ ? relaxed_->push(row.sample) : nullptr;
-    if (interrupt_.load(std::memory_order_relaxed)) return false;
-    if (output == nullptr) return true;
-    require_finite(*output);
-    const auto value = [](const FilterOutput* o) {
-      return o == nullptr ? std::nullopt : std::optional<double>(o->hamiltonian);
-    };
-    method_meter_.add(*output, value(exact), value(relaxed));
-    signals_.add(rows_[0], *output, with_truth_ ? &truths_[0] : nullptr, with_truth_ ? &truths_[1] : nullptr);
-    if (with_truth_) noise_.add(rows_[0], truths_[0], truths_[1], *output);
-    if (file_) file_->add(*output, times_[0]);
-    return true;
-  }
-
-  RunRecord record(double seconds) const;
-  std::int64_t windows() const { return method_meter_.windows(); }
-  bool slow() const { return method_.registry != nullptr; }
-  void commit() {
-    if (file_) file_->commit();
-  }
-
- private:
-  // Sizes, periods and deviations that are numbers each may overflow together.
-  void require_finite(const FilterOutput& o) const {
-    double sum = o.hamiltonian + o.zero.h0 + o.state.ax12 + o.state.ay12 + o.state.r1 + o.state.sx1 +
-                 o.state.sy1 + o.first.rotation;
-    for (std::size_t w = 0; w < 4; ++w) sum += std::hypot(o.first.x[w], o.first.y[w]);
-    if (std::isfinite(sum)) return;
-    throw DataError(
-        fmt::format("{}:{}: the window of {} rows from here on overflows: found H = {:g}, expected "
-                    "values, period and standard deviations of a size that a robot meets",
-                    file_name_, lines_[0], setup_.constants.samples, o.hamiltonian));
-  }
-
-  std::size_t rows_count() const { return static_cast<std::size_t>(setup_.constants.samples); }
-
-  FilterSetup setup_;
-  const std::string file_name_;
-  ProfileForm profile_;
-  FilterMethod method_;
-  SlidingFilter filter_;
-  SampleConverter converter_;
-  NoiseMeter noise_;
-  SignalMeter signals_;
-  MethodMeter method_meter_;
-  LastOf<ConvertedRow> rows_;
-  LastOf<TrueSample> truths_;
-  LastOf<double> times_;
-  LastOf<std::size_t> lines_;
-  const bool with_truth_;
-  const std::atomic<bool>& interrupt_;
-  std::int64_t count_ = 0;
-  std::optional<FilterOutputFile> file_;
-  std::unique_ptr<BlockSearch> exact_search_, relaxed_search_;
-  std::optional<SlidingFilter> exact_, relaxed_;
-};
-
-RunRecord FilterRun::record(double seconds) const {
-  RunRecord r;
-  r.problem = kFilterProblem;
-  r.label = method_.spec.text();
-  r.kind = "run";
-  r.solver = method_.spec.name;
-  if (r.solver != "zero") find_solver(r.solver).make(method_.spec.options, &r.options);
-  r.start = "nominal";
-  r.cost = -method_meter_.hamiltonian_mean();
-  r.evaluations = r.cost_evaluations = method_meter_.evaluations();
-  r.iterations = method_meter_.iterations();
-  r.seconds = seconds;
-  method_meter_.report(r.measures);
-  if (with_truth_) noise_.report(r.measures);
-  signals_.report(r.series);
-  method_meter_.histogram().report(r.series);
-  r.measures.put({"rows", static_cast<double>(count_), ""});
-  r.measures.put(
-      {"windows_per_second", static_cast<double>(windows()) / seconds, "1/s", Better::Higher, "", true});
-  return r;
-}
-
-// Constants whose quadratic form overflows are refused in the words of the options.
-ProfileForm profile_of(const EntropyConstants& c) {
-  ProfileForm form(c);
-  for (const QuadraticBlock& block : form.blocks())
-    if (!block.q.allFinite())
-      throw std::invalid_argument(fmt::format(
-          "the filter's constants overflow: found --sigma-encoder={:g}, --sigma-acceleration={:g}, "
-          "--sigma-rotation={:g}, dt {:g} s, L {:g} m, expected sizes that a robot meets",
-          c.sigma_encoder, c.sigma_acceleration, c.sigma_rotation, c.dt, c.wheel_distance));
-  return form;
-}
-
-// The choices that decide what the numbers mean.
-std::string setup_note(const EntropyOptions& options, const FilterSetup& setup) {
-  const EntropyConstants& c = setup.constants;
-  return fmt::format(
-      "{}: N {}, dt {:g} s, sigmas {:g} m, {:g} m/s^2, {:g} deg, L {:g} m, steps {:.9g} m/s^2, {:.9g} "
-      "deg/s^2; "
-      "accelerations {}{}; {}",
-      options.as_published ? "as published" : "corrected", c.samples, c.dt, c.sigma_encoder,
-      c.sigma_acceleration, c.sigma_rotation, c.wheel_distance, c.step_acceleration, c.step_rotation,
-      setup.turn_accelerations ? "turned from the robot's frame" : "in the filter's frame",
-      setup.omega_cross_v ? ", less omega x v" : "",
-      setup.rotation_sign > 0 ? "wheel 1 front right" : "wheel 1 rear left");
-}
-
-// Of a pipe there is nothing left to sum.
-std::string checksum(const std::string& data) {
-  return fs::is_regular_file(data) ? sha256_of_file(data) : std::string();
-}
-
-ExitCode filter_command(const EntropyOptions& options) {
+ExitCode filter_command(const FilterOptions& options) {
   const Format format = parse_format(options.format);
-  const InstructionSet kernel = kernel_in_force(options.kernel);
-  FilterSetup setup = make_filter_setup(options);
-  refuse_existing("--out", options.out, options.overwrite);
-  if (!options.records.empty()) require_no_records(options.records, options.overwrite, "--records");
-  // Before the data are read, which may take long or come but once.
-  make_filter_method(options.solver, profile_of(setup.constants), options.budget, options.seed, kernel,
-                     InterruptGuard::flag());
-  const std::string begin_utc = utc_now();
-  const Clock::time_point begin = Clock::now();
-  InputRows rows(options, setup, InterruptGuard::flag());
-  if (options.theta && !rows.data().thesis_layout())
-    throw std::invalid_argument(fmt::format(
-        "--theta={}: {} names its rotation column with a unit; the option is for the thesis' layout",
-        *options.theta, options.data));
-  setup.constants.dt = rows.data().dt();
-  InterruptGuard::remember();
-  FilterRun run(options, setup, kernel, rows.data(), InterruptGuard::flag());
-  {
-    CountLine progress(!options.quiet, "windows");
-    FilterInput input;
-    while (rows.next(input) && run.push(input))
-      if (run.slow() || run.windows() % 1024 == 0) progress.set(run.windows());
-  }
-  const bool interrupted = InterruptGuard::flag().load();
-  if (run.windows() == 0) throw Interruption();
-  RunRecord record = run.record(seconds_since(begin));
-  record.dataset = fs::path(options.data).stem().string();
-  record.base_seed = record.seed = options.seed;
-  record.termination = interrupted ? to_string(Termination::Interrupted) : "complete";
-  record.message = interrupted ? "interrupted, the windows so far" : "all windows of the run";
-  record.notes = {setup_note(options, setup)};
-  if (rows.data().unfinished())
-    record.notes.push_back("the last line of the file has no line break; it was taken");
-  record.context = run_context(1, kernel);
-  record.time_utc = begin_utc;
-
-  std::vector<Table> tables = filter_tables({record});
-  run.commit();
-  if (!options.records.empty()) {
-    record.dataset_sha256 = checksum(options.data);
-    RecordFile file(options.records, options.overwrite, "--records");
-    file.append(record);
-    save_tables(tables, options.records);
-  }
-  if (options.out != "-") print_tables(tables, format);
-  if (rows.data().unfinished() && !options.quiet)
-    note(fmt::format("{}: the last line has no line break; it was taken, since it has all its fields",
-                     options.data));
-  if (interrupted) note(fmt::format("interrupted after {} windows", run.windows()));
-  return interrupted ? ExitCode::Interrupted : ExitCode::Success;
+  EntropyOptions study = options.study;
+  refuse_existing("--out", study.out, study.overwrite);
+  RunFolder folder(options.records, study.overwrite, "--records");
+  folder.require_free();
+  study.checksum = folder.keeps();
+  TerminalWatcher watcher(options.quiet);
+  const FilteredRun run = filter_run(study, print_text, watcher, InterruptGuard::stop());
+  const std::vector<Table> tables = filter_tables({run.record});
+  folder.keep({run.record}, tables, watcher);
+  if (study.out != "-") print_tables(tables, format);
+  if (run.unfinished)
+    watcher.note(fmt::format("{}: the last line has no line break; it was taken, since it has all its fields",
+                             study.data));
+  if (run.interrupted) note(fmt::format("interrupted after {} windows", run.windows));
+  return run.interrupted ? ExitCode::Interrupted : ExitCode::Success;
 }
 
 }  // namespace
 
 VerbAction add_filter(CLI::App& app) {
-  return verb_action<EntropyOptions>(app, add_filter_options, filter_command);
+  return verb_action<FilterOptions>(app, add_filter_options, filter_command);
 }
 
 }  // namespace odobench

@@ -76,7 +76,8 @@ void add_meanings(CLI::App& app, EntropyOptions& o) {
 
 }  // namespace
 
-void add_filter_options(CLI::App& app, EntropyOptions& o) {
+void add_filter_options(CLI::App& app, FilterOptions& options) {
+  EntropyOptions& o = options.study;
   app.add_option("--data", o.data, "measurements, a row per step; '-' is standard input")
       ->required()
       ->type_name("RUN.CSV");
@@ -95,7 +96,7 @@ void add_filter_options(CLI::App& app, EntropyOptions& o) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   app.add_flag("--gap", o.gap, "measure how far H is from the best and from the relaxation");
-  app.add_option("--records", o.records, "folder for the run record (runs.jsonl) and tables.*")
+  app.add_option("--records", options.records, "folder for the run record (runs.jsonl) and tables.*")
       ->type_name("DIR");
   add_constants(app, o);
   add_meanings(app, o);
@@ -103,9 +104,9 @@ void add_filter_options(CLI::App& app, EntropyOptions& o) {
   add_kernel(app, o.kernel, kSpeedOnly);
   add_budget(app, o.budget);
   app.add_flag("--overwrite", o.overwrite, "replace files that are there");
-  app.add_option("--format", o.format, "of the tables on standard output [console]")
+  app.add_option("--format", options.format, "of the tables on standard output [console]")
       ->type_name("console|md|csv|json|latex");
-  app.add_flag("--quiet", o.quiet, "no progress on standard error");
+  app.add_flag("--quiet", options.quiet, "no progress on standard error");
   app.footer(kFilterExamples);
 }
 

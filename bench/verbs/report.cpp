@@ -11,6 +11,7 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/studies/figure_files.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/verbs/common_options.hpp"
@@ -73,7 +74,8 @@ ReportInput report_input(const ReportOptions& options, const std::vector<RunReco
 
 ExitCode report_command(const ReportOptions& options) {
   const Format format = parse_format(options.format);
-  const std::vector<RunRecord> records = read_all_records(options.runs);
+  TerminalWatcher watcher;
+  const std::vector<RunRecord> records = read_all_records(options.runs, watcher);
   if (options.out.empty() && options.figures.empty()) {
     print_tables(
         record_tables(records, notes_of_best(records), format == Format::Json || format == Format::Csv),
@@ -87,7 +89,8 @@ ExitCode report_command(const ReportOptions& options) {
   const Document document = make_report(report_input(options, records));
   std::vector<fs::path> written, drawn;
   // First, since it can still be interrupted.
-  if (!options.figures.empty()) drawn = write_figures(document, options.figures, existing);
+  if (!options.figures.empty())
+    drawn = write_figures(document, options.figures, existing, watcher, InterruptGuard::stop());
   if (!options.out.empty()) {
     const std::string page = render_html(document);
     InterruptGuard::remember();

@@ -13,6 +13,7 @@
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/studies/work_size.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
@@ -104,7 +105,8 @@ void write_recordings(const simulate::RecordingScenario& s, const SimulateOption
       fmt::format("--scenario={}: {} drives {} times", o.scenario, s.drives.size(), s.repetitions),
       samples_at_most, samples_at_most};
   require_size(size);
-  announce(size, o.quiet);
+  TerminalWatcher watcher(o.quiet);
+  announce(size, watcher);
   const simulate::SimulatedSet set = simulate::simulate_set(s, o.seed, o.threads);
   const std::string truth_json = simulate::truth_json(s, o.seed, set),
                     truth_csv = simulate::truth_csv(s, set);
@@ -139,8 +141,9 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   const double steps = s.setup.integration.method == dynamics::Method::RungeKutta4
                            ? end / s.setup.integration.step_s
                            : 0;  // adaptive ones are not known beforehand
+  TerminalWatcher watcher(o.quiet);
   announce(fmt::format("--scenario={}: {:.2g} samples, {:.2g} fixed steps", o.scenario, count, steps),
-           count * kSecondsPerMotorSample + steps * kSecondsPerStep, o.quiet);
+           count * kSecondsPerMotorSample + steps * kSecondsPerStep, watcher);
   const std::vector<dynamics::Sample> samples = dynamics::simulate_drive(s.setup, s.output_step_s);
   Random random(derive_seed(o.seed, {"dynamics", s.name}));
   const dynamics::SensorRun run =

@@ -16,8 +16,8 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/catalogue/problem_factory.hpp"
 #include "bench/studies/cells.hpp"
-#include "bench/studies/entropy_statistics.hpp"
-#include "bench/studies/fusion_runs.hpp"
+#include "bench/studies/entropy/entropy_statistics.hpp"
+#include "bench/studies/fusion/fusion_runs.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "tests/support/run_process.hpp"
 
@@ -161,19 +161,18 @@ TEST(Cells, GiveTheSameForAnyThreadsAndEndWithTheWatcher) {
   cells.add(plan, 0, notes);
   Budget budget;
   budget.max_evaluations = 200;
-  const std::atomic<bool> go_on{false};
   Counting one, two;
-  run_cells(problems, cells, budget, 1, go_on, one);
-  run_cells(problems, cells, budget, 2, go_on, two);
+  run_cells(problems, cells, budget, 1, Stop(), one);
+  run_cells(problems, cells, budget, 2, Stop(), two);
   EXPECT_EQ(one.costs.size(), cells.size());
   EXPECT_EQ(one.costs, two.costs);
   Counting full;
   full.throw_after = 3;
-  EXPECT_EQ(refusal([&] { run_cells(problems, cells, budget, 1, go_on, full); }), "the disc is full");
+  EXPECT_EQ(refusal([&] { run_cells(problems, cells, budget, 1, Stop(), full); }), "the disc is full");
   EXPECT_EQ(full.begun, 3);
   const std::atomic<bool> stop{true};
   Counting none;
-  run_cells(problems, cells, budget, 2, stop, none);
+  run_cells(problems, cells, budget, 2, Stop(stop), none);
   EXPECT_TRUE(none.costs.empty());
 }
 

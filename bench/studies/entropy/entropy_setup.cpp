@@ -1,4 +1,4 @@
-#include "bench/studies/entropy_setup.hpp"
+#include "bench/studies/entropy/entropy_setup.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -19,8 +19,7 @@ struct EntropyOptions {
   std::string data;                   // CSV file, "-" for standard input
   std::string truth;                  // CSV file; empty: none
   std::string solver = "coordinate";  // coordinate, exact, relaxed, zero, or any of the registry as typed
-  std::string out;                    // CSV file; empty: none
-  std::string records;                // folder for the run record and tables; empty: none
+  std::string out;                    // CSV file, "-" for standard output; empty: none
   std::vector<std::string> columns, truth_columns;  // name=column lists as typed
   bool as_published = false;
   std::optional<std::string> theta;                // of the thesis' layout: step-deg, ..., raw
@@ -35,9 +34,8 @@ struct EntropyOptions {
   std::optional<InstructionSet> kernel;
   std::uint64_t seed = 1;
   Budget budget{kDefaultMaxEvaluations};  // per window, of a solver of the registry
-  bool overwrite = false;
-  std::string format = "console";
-  bool quiet = false;
+  bool overwrite = false;                 // what `out` finds
+  bool checksum = false;                  // of the data for the record; reads them once more
 };
 
 struct FilterSetup {

@@ -1,4 +1,4 @@
-#include "bench/studies/derivative_table.hpp"
+#include "bench/studies/calibration/derivative_table.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "base/random.hpp"
-#include "bench/console/exit_code.hpp"
-#include "bench/console/progress.hpp"
 #include "solvers/derivative_check.hpp"
 #include "solvers/solve.hpp"
 
@@ -46,7 +44,7 @@ std::vector<Cell> row(const std::string& problem, const Worst& worst) {
 // The worst point of every parameter and kind, in their order; `points` counts those where there was anything
 // to compare.
 std::vector<Worst> worst_of(const LoadedProblem& loaded, std::uint64_t base_seed, int& points,
-                            CountLine& progress) {
+                            Watcher& watcher) {
   std::vector<Worst> worst;
   for (int k = 0; k <= kRandomPoints; ++k) {
     const std::uint64_t seed =
@@ -60,7 +58,7 @@ std::vector<Worst> worst_of(const LoadedProblem& loaded, std::uint64_t base_seed
     else
       for (std::size_t i = 0; i < found.size(); ++i)
         if (ratio(found[i]) > ratio(worst[i].comparison)) worst[i] = {found[i], point};
-    progress.add_one();
+    watcher.count_one();
   }
   return worst;
 }
@@ -68,7 +66,7 @@ std::vector<Worst> worst_of(const LoadedProblem& loaded, std::uint64_t base_seed
 }  // namespace
 
 DerivativeTable check_derivatives(const std::vector<LoadedProblem>& problems, std::uint64_t base_seed,
-                                  bool quiet) {
+                                  Watcher& watcher, const Stop& stop) {
   DerivativeTable result;
   Table& table = result.table;
   table.id = "derivatives";
@@ -82,11 +80,12 @@ DerivativeTable check_derivatives(const std::vector<LoadedProblem>& problems, st
                    number_column("differenced", "by differences", "", "value"),
                    text_column("point", "at"),
                    text_column("verdict")};
-  CountLine progress(!quiet, "points", static_cast<std::int64_t>(problems.size()) * (kRandomPoints + 1));
+  watcher.count_begins("points", static_cast<std::int64_t>(problems.size()) * (kRandomPoints + 1));
   int wrong = 0;
   for (const LoadedProblem& loaded : problems) {
+    stop.check();
     int here = 0;
-    for (const Worst& worst : worst_of(loaded, base_seed, here, progress)) {
+    for (const Worst& worst : worst_of(loaded, base_seed, here, watcher)) {
       table.rows.push_back(row(loaded.name(), worst));
       wrong += !worst.comparison.agrees();
     }
@@ -96,6 +95,7 @@ DerivativeTable check_derivatives(const std::vector<LoadedProblem>& problems, st
       table.notes.push_back(fmt::format("{}: at {} of {} points the cost is not finite.", loaded.name(),
                                         kRandomPoints + 1 - here, kRandomPoints + 1));
   }
+  watcher.count_ends();
   result.agrees = wrong == 0;
   table.notes.push_back(
       fmt::format("Ridders' extrapolated differences at the start and {} random points of the box, the worst "

@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "base/stop.hpp"
 #include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/watcher.hpp"
 #include "reports/render/table.hpp"
 
 namespace odobench {
@@ -16,9 +18,9 @@ struct DerivativeTable {
   bool agrees = true;
 };
 
-// Random points: derive_seed(base_seed, {problem, data set, "derivatives", number}). Shows its progress on a
-// terminal unless `quiet`; throws Interruption.
+// Random points: derive_seed(base_seed, {problem, data set, "derivatives", number}). The watcher
+// is told the points. Throws Interruption.
 DerivativeTable check_derivatives(const std::vector<LoadedProblem>& problems, std::uint64_t base_seed,
-                                  bool quiet);
+                                  Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench

@@ -1,4 +1,4 @@
-#include "bench/studies/entropy_statistics.hpp"
+#include "bench/studies/entropy/entropy_statistics.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "bench/studies/entropy_search.hpp"
+#include "bench/studies/entropy/entropy_search.hpp"
 
 #include <fmt/format.h>
 
@@ -12,10 +12,10 @@
 namespace odobench {
 
 RegistrySearch::RegistrySearch(const ProfileForm& profile, SolverSpec solver, const Budget& budget,
-                               std::uint64_t seed, const std::atomic<bool>& interrupt)
-    : profile_(profile), solver_(std::move(solver)), seed_(seed) {
+                               std::uint64_t seed, const Stop& stop)
+    : profile_(profile), solver_(std::move(solver)), stop_(stop), seed_(seed) {
   options_.budget = budget;
-  options_.interrupt = &interrupt;
+  options_.interrupt = stop.flag();
 }
 
 void RegistrySearch::observe(const EntropySample& sample) {
@@ -35,7 +35,7 @@ SearchResult RegistrySearch::minimise(std::span<const double> g, std::span<doubl
     throw std::invalid_argument(
         fmt::format("--solver={}: cannot run on windows of the filter: {}", solver_.text(), result.message));
   if (!result.usable()) {
-    if (options_.interrupt->load()) return found;
+    if (stop_.requested()) return found;
     throw std::runtime_error(
         fmt::format("window {}: {} gave no result: {}", window_ - 1, solver_.text(), result.message));
   }
@@ -53,8 +53,7 @@ SearchResult RegistrySearch::minimise(std::span<const double> g, std::span<doubl
 }
 
 FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, InstructionSet kernel,
-                                const std::atomic<bool>& interrupt) {
+                                std::uint64_t seed, InstructionSet kernel, const Stop& stop) {
   const std::vector<SolverSpec> list = parse_solver_list(text);
   if (list.size() != 1) throw std::invalid_argument(fmt::format("--solver={}: expected one solver", text));
   FilterMethod method;
@@ -66,12 +65,12 @@ FilterMethod make_filter_method(const std::string& text, const ProfileForm& prof
     method.search = ternary_greedy(profile.blocks(), kernel);
   } else if (plain && method.spec.name == "exact") {
     method.search = ternary_exact(
-        profile.blocks(), [&interrupt] { return interrupt.load(); }, kernel);
+        profile.blocks(), [stop] { return stop.requested(); }, kernel);
   } else if (plain && method.spec.name == "relaxed") {
     method.search = box_relaxation(profile.blocks());
   } else {
     find_solver(method.spec.name).make(method.spec.options, nullptr);  // throws on a bad name or option
-    auto search = std::make_unique<RegistrySearch>(profile, method.spec, budget, seed, interrupt);
+    auto search = std::make_unique<RegistrySearch>(profile, method.spec, budget, seed, stop);
     method.registry = search.get();
     method.search = std::move(search);
   }

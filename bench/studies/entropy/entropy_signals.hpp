@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/studies/entropy_setup.hpp"
+#include "bench/studies/entropy/entropy_setup.hpp"
 #include "problems/entropy/sliding_filter.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 

@@ -2,11 +2,11 @@
 // registry.
 #pragma once
 
-#include <atomic>
 #include <deque>
 #include <memory>
 #include <string>
 
+#include "base/stop.hpp"
 #include "problems/block_quadratic.hpp"
 #include "problems/entropy/profile_form.hpp"
 #include "problems/instruction_set.hpp"
@@ -20,7 +20,7 @@ class RegistrySearch final : public BlockSearch {
  public:
   // Seeds are derived from `seed`, the solver and the number of the window.
   RegistrySearch(const ProfileForm& profile, SolverSpec solver, const Budget& budget, std::uint64_t seed,
-                 const std::atomic<bool>& interrupt);
+                 const Stop& stop);
 
   // Every sample that the filter gets, before it gets it.
   void observe(const EntropySample& sample);
@@ -31,6 +31,7 @@ class RegistrySearch final : public BlockSearch {
  private:
   const ProfileForm& profile_;
   SolverSpec solver_;
+  const Stop stop_;
   SolveOptions options_;
   std::uint64_t seed_;
   std::int64_t window_ = 0;
@@ -46,7 +47,6 @@ struct FilterMethod {
 // `text` as typed: coordinate, exact, relaxed, zero, or a solver of the registry. `profile` outlives the
 // result. Throws std::invalid_argument on what is none of them or several.
 FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, InstructionSet kernel,
-                                const std::atomic<bool>& interrupt);
+                                std::uint64_t seed, InstructionSet kernel, const Stop& stop);
 
 }  // namespace odobench

@@ -1,4 +1,4 @@
-#include "bench/studies/tracks.hpp"
+#include "bench/studies/calibration/tracks_csv.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-#include "bench/studies/entropy_output.hpp"
+#include "bench/studies/entropy/entropy_output.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
-
-#include "bench/console/table_output.hpp"
+#include <utility>
 
 namespace odobench {
 namespace {
@@ -22,21 +21,23 @@ std::string header(int samples, bool with_time) {
 
 }  // namespace
 
-FilterOutputFile::FilterOutputFile(const std::filesystem::path& file, Existing existing, int samples,
-                                   bool with_time, double rotation_sign)
-    : standard_output_(file == "-"),
+FilterOutputFile::FilterOutputFile(const std::filesystem::path& file, Existing existing,
+                                   TextSink standard_output, int samples, bool with_time,
+                                   double rotation_sign)
+    : to_standard_output_(file == "-"),
+      standard_output_(std::move(standard_output)),
       transaction_(existing),
       with_time_(with_time),
       rotation_sign_(rotation_sign) {
-  if (standard_output_)
+  if (to_standard_output_)
     buffer_ = header(samples, with_time);
   else
     transaction_.add(file, header(samples, with_time));
 }
 
 void FilterOutputFile::flush() {
-  if (standard_output_)
-    print_text(buffer_);
+  if (to_standard_output_)
+    standard_output_(buffer_);
   else
     transaction_.append(buffer_);
   buffer_.clear();
@@ -86,7 +87,7 @@ void FilterOutputFile::add(const FilterOutput& output, double time_s) {
 
 void FilterOutputFile::commit() {
   flush();
-  if (!standard_output_) transaction_.commit();
+  if (!to_standard_output_) transaction_.commit();
 }
 
 }  // namespace odobench

@@ -1,4 +1,4 @@
-#include "bench/studies/fusion_runs.hpp"
+#include "bench/studies/fusion/fusion_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -199,12 +199,15 @@ std::vector<FilterChoice> parse_filters(const std::vector<std::string>& lists) {
 
 FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const FilterChoice& filter,
                   const SensorsFile& sensors, const std::vector<std::vector<SensorStream>>& streams,
-                  int threads) {
+                  int threads, const Stop& stop) {
   std::vector<Fused> fused(recordings.size());
-  parallel_for(recordings.size(), thread_count(threads), [&](std::size_t i) {
-    fused[i] = fuse_one(recordings[i], z, filter, sensors, streams[i]);
-    require_finite(fused[i].errors, filter);
-  });
+  parallel_for(
+      recordings.size(), thread_count(threads),
+      [&](std::size_t i) {
+        fused[i] = fuse_one(recordings[i], z, filter, sensors, streams[i]);
+        require_finite(fused[i].errors, filter);
+      },
+      stop);
   FusedRow out;
   out.row.filtered = filter.filtered;
   double samples = 0, position = 0, heading = 0;
@@ -228,11 +231,11 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
 
 std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
                                                    std::span<const Recording> recordings, std::uint64_t seed,
-                                                   int threads) {
-  require_measurements(file, recordings);
+                                                   int threads, const Stop& stop) {
   std::vector<std::vector<SensorStream>> streams(recordings.size());
-  parallel_for(recordings.size(), thread_count(threads),
-               [&](std::size_t i) { streams[i] = make_streams(file, recordings[i], seed); });
+  parallel_for(
+      recordings.size(), thread_count(threads),
+      [&](std::size_t i) { streams[i] = make_streams(file, recordings[i], seed); }, stop);
   return streams;
 }
 

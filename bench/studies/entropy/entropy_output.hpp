@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "base/files.hpp"
@@ -10,14 +11,17 @@
 
 namespace odobench {
 
+// Where text goes that is for standard output.
+using TextSink = std::function<void(const std::string& text)>;
+
 // Rows go to a temporary file beside the target piece by piece; commit() gives it its name. Without commit()
 // nothing remains.
 class FilterOutputFile {
  public:
-  // `file`: "-" is standard output, which gets the rows as they come. `rotation_sign`: of the output's
-  // rotation against the model's.
-  FilterOutputFile(const std::filesystem::path& file, Existing existing, int samples, bool with_time,
-                   double rotation_sign);
+  // `file`: "-" is standard output, which is handed the rows as they come; it may be empty for other files.
+  // `rotation_sign`: of the output's rotation against the model's.
+  FilterOutputFile(const std::filesystem::path& file, Existing existing, TextSink standard_output,
+                   int samples, bool with_time, double rotation_sign);
   void add(const FilterOutput& output, double time_s);
   void commit();
 
@@ -27,7 +31,8 @@ class FilterOutputFile {
 
   void flush();
 
-  const bool standard_output_;
+  const bool to_standard_output_;
+  const TextSink standard_output_;
   FileTransaction transaction_;
   std::string buffer_;
   bool with_time_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stop.hpp"
 #include "bench/catalogue/problem_factory.hpp"
 #include "problems/fusion/sensors_file.hpp"
 #include "reports/kinds/fusion/fusion_tables.hpp"
@@ -33,15 +34,16 @@ struct FusedRow {
 };
 
 // All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the
-// result.
+// result. Throws Interruption between two recordings.
 FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const FilterChoice& filter,
                   const SensorsFile& sensors, const std::vector<std::vector<SensorStream>>& streams,
-                  int threads);
+                  int threads, const Stop& stop);
 
-// Streams of every recording, made side by side.
+// Streams of every recording, made side by side. How many measurements they have is asked before
+// (require_measurements).
 std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
                                                    std::span<const Recording> recordings, std::uint64_t seed,
-                                                   int threads);
+                                                   int threads, const Stop& stop);
 // The table that says that the sensors are synthetic, and what they are.
 Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset);
 

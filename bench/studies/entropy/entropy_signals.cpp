@@ -1,4 +1,4 @@
-#include "bench/studies/entropy_signals.hpp"
+#include "bench/studies/entropy/entropy_signals.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,40 @@
+#include "bench/studies/calibration/evaluation_study.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/studies/records.hpp"
+
+namespace odobench {
+namespace {
+
+void require_finite(const RunRecord& record) {
+  bool finite = record.cost && std::isfinite(*record.cost);
+  for (const RecordingError& e : record.errors)
+    for (const double error : e.max_error) finite = finite && std::isfinite(error);
+  if (!finite)
+    throw DataError(
+        fmt::format("parameters '{}' on data set '{}': the cost overflows, expected values of a robot's size",
+                    record.label, record.dataset));
+}
+
+}  // namespace
+
+Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, const Stop& stop) {
+  const InstructionSet kernel = kernel_in_force(study.kernel);
+  Evaluation evaluation{load_calibration(study.data, kernel), {}, {}};
+  evaluation.sets = read_parameter_list(evaluation.loaded, study.parameters, watcher);
+  const RunContext context = run_context(1, kernel);
+  for (const ParameterSet& set : evaluation.sets) {
+    stop.check();
+    evaluation.records.push_back(evaluation_record(evaluation.loaded, set.label, set.values, context));
+    require_finite(evaluation.records.back());
+  }
+  return evaluation;
+}
+
+}  // namespace odobench

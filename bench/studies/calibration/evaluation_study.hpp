@@ -1,0 +1,32 @@
+// Cost and errors of given parameters: the study behind `bench evaluate`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stop.hpp"
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/parameter_sets.hpp"
+#include "bench/studies/watcher.hpp"
+#include "reports/records/record.hpp"
+
+namespace odobench {
+
+struct EvaluationStudy {
+  std::string data;                     // path of set.json; empty: the demo set
+  std::vector<std::string> parameters;  // files or names, as of read_parameter_list()
+  std::optional<InstructionSet> kernel;
+};
+
+struct Evaluation {
+  LoadedProblem loaded;
+  std::vector<ParameterSet> sets;
+  std::vector<RunRecord> records;  // one per set
+};
+
+// Throws std::invalid_argument on parameters that are none, DataError on a bad set and where J or an error
+// overflows, Interruption when it is to stop.
+Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, const Stop& stop);
+
+}  // namespace odobench

@@ -1,0 +1,112 @@
+#include "bench/studies/calibration/solver_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/cell_recorder.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/studies/records.hpp"
+#include "bench/studies/run_tracks.hpp"
+
+namespace odobench {
+namespace {
+
+CellPlan make_plan(const SolverStudy& study, std::vector<std::string>& notes) {
+  CellPlan plan;
+  plan.solvers = resolve_solvers(
+      study.solvers.empty() ? std::vector<std::string>{"lm,ip,ga,pso"} : study.solvers, notes);
+  if (!study.polish.empty()) {
+    std::vector<std::string> dropped;
+    const std::vector<SolverSpec> polish = resolve_solvers({study.polish}, dropped);
+    if (polish.size() != 1)
+      throw std::invalid_argument(fmt::format("--polish={}: expected one solver", study.polish));
+    plan.polish = polish.front();
+  }
+  plan.repeat = study.repeat;
+  plan.base_seed = study.seed;
+  plan.random_start = study.random_start;
+  return plan;
+}
+
+std::vector<LoadedProblem> load_problems(const SolverStudy& study, InstructionSet kernel,
+                                         std::vector<std::string>& notes) {
+  const std::vector<std::string> names =
+      resolve_problems(study.problems.empty() ? std::vector<std::string>{"calibration"} : study.problems,
+                       study.dimension, notes);
+  if (!study.data.empty() && std::find(names.begin(), names.end(), "calibration") == names.end())
+    throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", names.front()));
+  std::vector<LoadedProblem> loaded;
+  for (const std::string& name : names)
+    loaded.push_back(make_problem(name, study.dimension, name == "calibration" ? study.data : "", kernel));
+  return loaded;
+}
+
+// The cells of every problem, problem by problem. Remarks are the same for all.
+CellList plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded, std::vector<std::string>& notes) {
+  CellList cells;
+  std::vector<std::string> repeated;
+  for (std::size_t k = 0; k < loaded.size(); ++k) {
+    plan.problem = loaded[k].name();
+    plan.dataset = loaded[k].dataset_name();
+    cells.add(plan, k, k == 0 ? notes : repeated);
+  }
+  return cells;
+}
+
+// The records of all cells that ran, behind those that are there.
+void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded, const CellList& cells,
+             const RunContext& context, RunFolder& folder, Watcher& watcher, const Stop& stop,
+             SolverRuns& runs) {
+  const auto label = [&](std::size_t i) {
+    const RunCell cell = cells[i];
+    return loaded.size() == 1 ? cell.label() : loaded[cell.problem].name() + " " + cell.label();
+  };
+  const auto record = [&](const RunCell& cell, const Result& result, const std::string& time_utc) {
+    return run_record(loaded[cell.problem], cell, study.seed, study.budget, result, context, time_utc);
+  };
+  std::vector<Problem> problems;
+  for (const LoadedProblem& one : loaded) problems.push_back(one.problem);
+  CellRecorder recorder(cells, record, folder, watcher);
+  watcher.runs_begin(cells.size(), label);
+  run_cells(problems, cells, study.budget, context.threads, stop, recorder);
+  watcher.runs_end();
+  runs.interrupted = stop.requested();
+  recorder.move_to(runs.records);
+  for (const LoadedProblem& one : loaded)
+    if (one.calibration && folder.keeps()) folder.save(run_tracks(one, runs.records));
+  // Cells end in an order that depends on the threads; the finished file does not.
+  if (!recorder.in_order()) folder.replace(runs.records);
+}
+
+}  // namespace
+
+SolverRuns run_solvers(const SolverStudy& study, RunFolder& folder, Watcher& watcher, const Stop& stop) {
+  std::vector<std::string> notes;
+  const CellPlan plan = make_plan(study, notes);
+  const InstructionSet kernel = kernel_in_force(study.kernel);
+  const std::vector<LoadedProblem> loaded = load_problems(study, kernel, notes);
+  const CellList cells = plan_all(plan, loaded, notes);
+  const RunContext context = run_context(thread_count(study.threads), kernel);
+  folder.require_free();
+  for (const std::string& text : notes) watcher.note(text);
+
+  SolverRuns runs;
+  runs.planned = cells.size();
+  if (study.check_derivatives) {
+    runs.derivatives = check_derivatives(loaded, study.seed, watcher, stop);
+    if (!runs.derivatives->agrees) return runs;
+  }
+  for (const LoadedProblem& one : loaded)
+    if (one.calibration)
+      runs.records.push_back(evaluation_record(one, "nominal", one.problem.start(), context));
+  watcher.results_begin();
+  folder.open();
+  for (const RunRecord& record : runs.records) folder.append(record);
+  run_all(study, loaded, cells, context, folder, watcher, stop, runs);
+  return runs;
+}
+
+}  // namespace odobench

@@ -1,0 +1,81 @@
+#include "bench/studies/fusion/fusion_study.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bench/catalogue/option_values.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/studies/fusion/fusion_runs.hpp"
+#include "bench/studies/parameter_sets.hpp"
+#include "bench/studies/run_tracks.hpp"
+#include "bench/studies/work_size.hpp"
+#include "reports/kinds/fusion/fusion_record.hpp"
+
+namespace odobench {
+namespace {
+
+// Title, description and sensors of the table, in words.
+std::vector<std::string> sensor_notes(const Table& table) {
+  std::vector<std::string> notes{table.title};
+  for (const std::vector<Cell>& row : table.rows) {
+    std::string text = row.front().text + ": ";
+    for (std::size_t c = 1; c < row.size(); ++c)
+      text += fmt::format("{}{} {}", c > 1 ? "; " : "", table.columns[c].name, row[c].text);
+    notes.push_back(text);
+  }
+  notes.insert(notes.end(), table.notes.begin(), table.notes.end());
+  return notes;
+}
+
+// What all records of a study have in common.
+RunRecord common_record(const LoadedProblem& loaded, std::uint64_t seed, const Table& sensors,
+                        const RunContext& context) {
+  RunRecord record;
+  record.dataset = loaded.dataset_name();
+  record.dataset_sha256 = loaded.dataset_sha256;
+  record.seed = record.base_seed = seed;
+  record.termination = "evaluated";
+  record.notes = sensor_notes(sensors);
+  record.context = context;
+  return record;
+}
+
+}  // namespace
+
+FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Stop& stop) {
+  const std::vector<FilterChoice> filters = parse_filters(study.filters);
+  const SensorsFile sensors = read_sensors(study.sensors);
+  const InstructionSet kernel = kernel_in_force(study.kernel);
+  const LoadedProblem loaded = load_calibration(study.data, kernel);
+  const std::vector<ParameterSet> sets = read_parameter_list(loaded, study.parameters, watcher);
+  const std::vector<Recording>& recordings = loaded.calibration->recordings();
+  const std::uint64_t seed = study.seed.value_or(sensors.seed);
+  const double measurements = require_measurements(sensors, recordings);
+  const auto times = static_cast<double>(filters.size() * sets.size());
+  announce(
+      fmt::format("--sensors={}: {:.2g} measurements, filtered {} times", study.sensors, measurements, times),
+      measurements * times * kSecondsPerMeasurement, watcher);
+
+  const auto streams = all_streams(sensors, recordings, seed, study.threads, stop);
+  FusionRuns runs;
+  runs.tracks = reference_tracks(kFusionProblem, loaded);
+  runs.sensors = sensor_table(sensors, seed, loaded.dataset_name());
+  const RunRecord common =
+      common_record(loaded, seed, runs.sensors, run_context(thread_count(study.threads), kernel));
+  for (const FilterChoice& filter : filters)
+    for (const ParameterSet& set : sets) {
+      FusedRow fused = fuse_all(recordings, set.values, filter, sensors, streams, study.threads, stop);
+      fused.row.label = filter.filtered ? set.label + "+" + filter.name : set.label;
+      RunRecord record = common;
+      put_fusion_row(fused.row, record);
+      record.errors = std::move(fused.errors);
+      record.time_utc = utc_now();
+      runs.records.push_back(std::move(record));
+      if (study.keep_tracks) runs.tracks.tracks.push_back({fused.row.label, 1, std::move(fused.track)});
+      runs.rows.push_back(std::move(fused.row));
+    }
+  return runs;
+}
+
+}  // namespace odobench

@@ -1,0 +1,162 @@
+#include "bench/studies/planning/verification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/random.hpp"
+#include "bench/catalogue/option_values.hpp"
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/catalogue/scenarios.hpp"
+#include "bench/studies/context.hpp"
+#include "bench/studies/records.hpp"
+#include "bench/studies/work_size.hpp"
+#include "problems/simulation/simulated_set.hpp"
+#include "reports/kinds/verification/verification_tables.hpp"
+
+namespace odobench {
+
+Estimate estimate(const std::vector<double>& values) {
+  const ErrorStatistics s = error_statistics_of(values);
+  if (values.size() < 2 || std::isnan(s.mean)) return {s.mean, std::nullopt};
+  const auto n = static_cast<double>(values.size());
+  const boost::math::students_t distribution(n - 1);
+  return {s.mean, boost::math::quantile(distribution, 0.975) * s.sigma / std::sqrt(n)};
+}
+
+std::vector<double> picked(const std::vector<VerifyOutcome>& outcomes, const Pick& pick) {
+  std::vector<double> values;
+  for (const VerifyOutcome& o : outcomes) values.push_back(pick(o));
+  return values;
+}
+
+namespace {
+
+std::vector<ParameterSet> read_sets(const simulate::RecordingScenario& s, const VerificationStudy& study) {
+  const ParameterNames names{robot_parameters(s.robot), simulate::known_parameters(s)};
+  std::vector<ParameterSet> sets = read_parameters(names, "nominal");
+  for (const std::string& source : split_sources(study.parameters))
+    for (ParameterSet& set : read_parameters(names, source))
+      if (set.label != "nominal" || set.values != sets.front().values)
+        add_parameter_set(std::move(set), sets);
+  return sets;
+}
+
+std::array<double, 2> arrival_of(const simulate::SimulatedDrive& d, const simulate::Drive& drive) {
+  const simulate::Pose &start = d.logs.true_poses.front(), &end = d.logs.true_poses.back();
+  const simulate::Pose wanted = drive.reference(drive.duration());
+  const double c = std::cos(start.theta), s = std::sin(start.theta);
+  const double x = start.x + c * wanted.x - s * wanted.y, y = start.y + s * wanted.x + c * wanted.y;
+  return {std::hypot(end.x - x, end.y - y), std::abs(end.theta - start.theta - wanted.theta)};
+}
+
+VerifyOutcome drive_once(const simulate::RecordingScenario& s, const Vector& believed, std::uint64_t seed,
+                         int threads, InstructionSet kernel) {
+  simulate::SimulatedSet set = simulate::simulate_set(s, seed, threads);
+  VerifyOutcome outcome;
+  for (std::size_t t = 0; t < s.drives.size(); ++t) {
+    const auto repetitions = static_cast<std::size_t>(s.repetitions);
+    std::array<double, 2> mean{};
+    for (std::size_t k = 0; k < repetitions; ++k) {
+      const std::array<double, 2> one = arrival_of(set.drives[t * repetitions + k], s.drives[t]);
+      for (std::size_t i = 0; i < 2; ++i) mean[i] += one[i] / static_cast<double>(repetitions);
+    }
+    outcome.arrival.push_back(mean);
+  }
+  const CalibrationProblem problem(robot_parameters(s.robot), std::move(set.dataset.recordings), kernel);
+  std::vector<RecordingError> errors;
+  for (const MaxErrors& e : problem.max_errors(believed))
+    errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+  outcome.errors = error_statistics(errors);
+  outcome.totals = error_totals(outcome.errors);
+  outcome.recordings = std::move(errors);
+  return outcome;
+}
+
+// One record per set: the errors of every drive of every repeat, and where the robot really ended.
+std::vector<RunRecord> verification_records(const simulate::RecordingScenario& s,
+                                            const std::vector<ParameterSet>& sets,
+                                            const std::vector<std::vector<VerifyOutcome>>& outcomes,
+                                            const VerificationStudy& study, InstructionSet kernel) {
+  const RunContext context = run_context(thread_count(study.threads), kernel);
+  std::vector<RunRecord> records;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    RunRecord record = study_record(kVerificationProblem, s.name, sets[i].label, robot_parameters(s.robot),
+                                    sets[i].values, context);
+    record.message = fmt::format("errors on {} new drives of each trajectory, steered by these parameters",
+                                 study.repeat * s.repetitions);
+    record.seed = record.base_seed = study.seed;
+    for (std::size_t k = 0; k < outcomes[i].size(); ++k)
+      for (RecordingError e : outcomes[i][k].recordings) {
+        e.recording += fmt::format("#{}", k + 1);
+        e.repetition += static_cast<int>(k) * s.repetitions;
+        record.errors.push_back(std::move(e));
+      }
+    for (std::size_t t = 0; t < s.drives.size(); ++t) {
+      const auto at = [&](std::size_t v) {
+        return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
+            .mean;
+      };
+      record.statistics[kArrivalPosition + s.drives[t].name] = at(0);
+      record.statistics[kArrivalHeading + s.drives[t].name] = at(1);
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+// The scenario with each set as what the robot believes.
+std::vector<simulate::RecordingScenario> believing(const simulate::RecordingScenario& scenario,
+                                                   const std::vector<ParameterSet>& sets) {
+  std::vector<simulate::RecordingScenario> scenarios;
+  for (const ParameterSet& set : sets) {
+    scenarios.push_back(scenario);
+    std::copy(set.values.begin(), set.values.end(), scenarios.back().control.believed.begin());
+    simulate::validate(scenarios.back(), fmt::format("--parameters: set '{}'", set.label));
+  }
+  return scenarios;
+}
+
+void require_and_announce(const VerificationStudy& study, const simulate::RecordingScenario& scenario,
+                          std::size_t sets, Watcher& watcher) {
+  const double tour = simulate::most_samples(scenario);
+  const WorkSize size{
+      fmt::format("--scenario={} --repeat={}: {} sets drive {} drives {} times", study.scenario, study.repeat,
+                  sets, scenario.drives.size(), scenario.repetitions),
+      tour, tour * study.repeat * static_cast<double>(sets)};
+  require_size(size);
+  announce(size, watcher);
+}
+
+}  // namespace
+
+Verification verify_parameters(const VerificationStudy& study, Watcher& watcher, const Stop& stop) {
+  const InstructionSet kernel = kernel_in_force(study.kernel);
+  const simulate::RecordingScenario scenario = load_recording_scenario(study.scenario);
+  if (!scenario.control.closed_loop)
+    throw std::invalid_argument(fmt::format(
+        "--scenario={}: it is open loop; parameters that a robot believes matter in the closed loop only",
+        study.scenario));
+  Verification v;
+  for (const simulate::Drive& drive : scenario.drives) v.drives.push_back(drive.name);
+  v.sets = read_sets(scenario, study);
+  const std::vector<simulate::RecordingScenario> scenarios = believing(scenario, v.sets);
+  require_and_announce(study, scenario, v.sets.size(), watcher);
+  v.outcomes.resize(v.sets.size());
+  watcher.count_begins("tours of all drives", static_cast<std::int64_t>(v.sets.size()) * study.repeat);
+  for (std::size_t i = 0; i < v.sets.size(); ++i)
+    for (int k = 1; k <= study.repeat; ++k) {
+      stop.check();
+      const std::uint64_t seed = derive_seed(study.seed, {"verify", scenario.name, std::to_string(k)});
+      v.outcomes[i].push_back(drive_once(scenarios[i], v.sets[i].values, seed, study.threads, kernel));
+      watcher.count_one();
+    }
+  watcher.count_ends();
+  v.records = verification_records(scenario, v.sets, v.outcomes, study, kernel);
+  return v;
+}
+
+}  // namespace odobench

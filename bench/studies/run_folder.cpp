@@ -1,0 +1,101 @@
+#include "bench/studies/run_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "base/text.hpp"
+#include "bench/catalogue/option_values.hpp"
+
+namespace odobench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kSavedWidth = 110;
+constexpr std::array kSaved{Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex};
+
+fs::path table_file(const fs::path& folder, Format format) {
+  return folder / ("tables." + file_extension(format));
+}
+
+// What belongs to the records of a folder, runs.jsonl first.
+std::vector<fs::path> result_files(const fs::path& folder) {
+  std::vector<fs::path> files{folder / "runs.jsonl"};
+  for (const Format format : kSaved) files.push_back(table_file(folder, format));
+  files.push_back(folder / "tracks" / "tracks.json");
+  return files;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(fs::path folder, bool overwrite, const char* option)
+    : folder_(std::move(folder)), overwrite_(overwrite), option_(option) {}
+
+void RunFolder::require_free() const {
+  if (!keeps()) return;
+  require_own_folder(folder_ / "tracks");
+  for (const fs::path& file : result_files(folder_)) {
+    require_replaceable(file);
+    std::error_code error;
+    if (!overwrite_ && fs::exists(file, error))
+      throw std::invalid_argument(
+          fmt::format("{}={}: it holds {} already; choose another folder or give --overwrite", option_,
+                      shown_path(folder_), file.lexically_relative(folder_).string()));
+  }
+}
+
+void RunFolder::open() {
+  if (!keeps()) return;
+  try {
+    file_ = std::make_unique<LineFile>(folder_ / "runs.jsonl", existing_files(overwrite_));
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("{}={}: {}", option_, shown_path(folder_), e.what()));
+  }
+  if (!overwrite_) return;
+  // What was made of the records that are gone would tell of them until the new ones are complete.
+  for (const fs::path& file : result_files(folder_)) {
+    std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
+    if (file != file_->path()) fs::remove(file, error);
+  }
+}
+
+void RunFolder::append(const RunRecord& record) {
+  if (keeps()) file_->append(to_json_line(record));
+}
+
+void RunFolder::replace(const std::vector<RunRecord>& records) {
+  if (!keeps()) return;
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  file_->replace(text);
+}
+
+void RunFolder::save(const TrackSet& tracks) {
+  if (!keeps()) return;
+  FileTransaction transaction;
+  for (const auto& [file, bytes] : track_files(tracks)) transaction.add(folder_ / file, bytes);
+  transaction.commit();
+}
+
+void RunFolder::save(const std::vector<Table>& tables) {
+  if (!keeps()) return;
+  FileTransaction transaction;
+  for (const Format format : kSaved)
+    transaction.add(table_file(folder_, format), render(tables, format, {kSavedWidth, false}));
+  transaction.commit();
+}
+
+void RunFolder::keep(const std::vector<RunRecord>& records, const std::vector<Table>& tables,
+                     Watcher& watcher, const TrackSet* tracks) {
+  if (!keeps()) return;
+  watcher.results_begin();
+  open();
+  for (const RunRecord& record : records) append(record);
+  if (tracks != nullptr) save(*tracks);
+  save(tables);
+}
+
+}  // namespace odobench
