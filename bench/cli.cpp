@@ -11,6 +11,7 @@
 #include "base/files.hpp"
 #include "base/names.hpp"
 #include "base/text.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/console/faults.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
@@ -122,7 +123,7 @@ std::string complete_verb(std::vector<std::string>& words) {
       fmt::format("unknown verb '{}'{}; 'bench --help' lists them", words[0], did_you_mean(words[0], names)));
 }
 
-ExitCode dispatch(std::vector<std::string> words) {
+ExitCode dispatch(std::vector<std::string> words, const Catalogue& catalogue) {
   CLI::App app{"Calibrates wheeled robots from recordings and compares the solvers that do it.", "bench"};
   app.footer(kProgramExamples);
   app.set_version_flag("--version", version_line);
@@ -158,7 +159,7 @@ ExitCode dispatch(std::vector<std::string> words) {
   if (verb == nullptr || !verb->parsed()) throw std::logic_error("no verb was parsed");
   refuse_leftovers(*verb);
   apply_json(*verb);
-  return execute();
+  return execute(catalogue);
 }
 
 int fail(ExitCode code, const std::string& message) {
@@ -174,7 +175,9 @@ int bench_main(int argc, char** argv) {
   announce_crashes();
   const InterruptGuard guard;
   try {
-    return static_cast<int>(dispatch(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)));
+    Catalogue catalogue;
+    add_known(catalogue);
+    return static_cast<int>(dispatch({argv + std::min(argc, 1), argv + argc}, catalogue));
   } catch (...) {
     const Ending ending = ending_of(std::current_exception());
     return fail(ending.code, ending.message);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "base/names.hpp"
 #include "solvers/lattice/block_solvers.hpp"
@@ -20,35 +21,44 @@
 
 namespace odobench {
 
-const std::vector<SolverEntry>& solver_registry() {
-  static const std::vector<SolverEntry> registry = [] {
-    std::vector<SolverEntry> rows;
-    rows.push_back(levenberg_marquardt_entry());
-    rows.push_back(ceres_entry());
-    rows.push_back(interior_point_entry());
-    rows.push_back(genetic_entry());
-    rows.push_back(particle_swarm_entry());
-    rows.push_back(cmaes_entry());
-    rows.push_back(differential_evolution_entry());
-    rows.push_back(multistart_entry());
-    rows.push_back(coordinate_search_entry());
-    rows.push_back(exact_search_entry());
-    rows.push_back(relaxed_search_entry());
-    for (SolverEntry& entry : nlopt_entries()) rows.push_back(std::move(entry));
-    return rows;
-  }();
-  return registry;
+void SolverTable::add(SolverEntry entry) {
+  for (const SolverEntry& e : entries_)
+    if (e.name == entry.name) throw std::logic_error(fmt::format("solver '{}' is added twice", entry.name));
+  entries_.push_back(std::move(entry));
 }
 
-const SolverEntry& find_solver(const std::string& name) {
-  const auto& rows = solver_registry();
+const SolverEntry& SolverTable::find(const std::string& name) const {
   const auto row =
-      std::find_if(rows.begin(), rows.end(), [&](const SolverEntry& e) { return e.name == name; });
-  if (row != rows.end()) return *row;
+      std::find_if(entries_.begin(), entries_.end(), [&](const SolverEntry& e) { return e.name == name; });
+  if (row != entries_.end()) return *row;
   std::vector<std::string> names;
-  for (const SolverEntry& e : rows) names.push_back(e.name);
+  for (const SolverEntry& e : entries_) names.push_back(e.name);
   throw std::invalid_argument(
       fmt::format("unknown solver '{}'{}; 'bench list solvers' shows all", name, did_you_mean(name, names)));
+}
+
+void add_known_solvers(SolverTable& table) {
+  table.add(levenberg_marquardt_entry());
+  table.add(ceres_entry());
+  table.add(interior_point_entry());
+  table.add(genetic_entry());
+  table.add(particle_swarm_entry());
+  table.add(cmaes_entry());
+  table.add(differential_evolution_entry());
+  table.add(multistart_entry(table));
+  table.add(coordinate_search_entry());
+  table.add(exact_search_entry());
+  table.add(relaxed_search_entry());
+  for (SolverEntry& entry : nlopt_entries()) table.add(std::move(entry));
+}
+
+const SolverTable& known_solvers() {
+  static const SolverTable& table = []() -> const SolverTable& {
+    static SolverTable known;
+    add_known_solvers(known);
+    return known;
+  }();
+  return table;
 }
 
 }  // namespace odobench

@@ -57,10 +57,11 @@ Result solve(const Problem& problem, const SolverSpec& spec, const Vector& start
              const SolveOptions& options) {
   Result result;
   result.solver = spec.text();
-  const std::unique_ptr<Solver> solver = find_solver(spec.name).make(spec.options, &result.options);
+  const SolverTable& known = options.solvers != nullptr ? *options.solvers : known_solvers();
+  const std::unique_ptr<Solver> solver = known.find(spec.name).make(spec.options, &result.options);
   const bool polished = !options.polish.name.empty();
   std::unique_ptr<Solver> polisher;
-  if (polished) polisher = find_solver(options.polish.name).make(options.polish.options, nullptr);
+  if (polished) polisher = known.find(options.polish.name).make(options.polish.options, nullptr);
 
   if (start.size() != problem.dimension() || !start.allFinite())
     throw std::invalid_argument(fmt::format("start: expected {} finite values, found {}{}",

@@ -1,6 +1,7 @@
 // One cell of a table: a problem, a solver, a start, a seed, a budget -> a result.
 #pragma once
 
+#include "solvers/registry.hpp"
 #include "solvers/solver.hpp"
 #include "solvers/verdict.hpp"
 
@@ -15,6 +16,8 @@ struct SolveOptions {
   // Solver that goes on from the best point found, e.g. "lm"; the name "" means none. It spends from the same
   // budget: min(max_evaluations / 10, 500) evaluations and a tenth of the time are kept for it.
   SolverSpec polish;
+  // Where solvers are looked up; null: known_solvers().
+  const SolverTable* solvers = nullptr;
 };
 
 struct Result {

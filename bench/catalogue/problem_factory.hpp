@@ -1,4 +1,4 @@
-// From a data set or a classic function's name to a problem that solvers take.
+// A problem with all that records say of it, and calibrations made of data sets.
 #pragma once
 
 #include <memory>
@@ -30,25 +30,7 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot);
 // robot.
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel);
 
-// `name`: "calibration" or a classic one, which takes no `data`, with `dimension` (0: its usual one). Throws
-// std::invalid_argument on an unknown name (suggests the nearest) or a dimension that the problem does not
-// take; DataError as above.
-LoadedProblem make_problem(const std::string& name, int dimension, const std::string& data,
-                           InstructionSet kernel);
-
-// Every name make_problem takes.
-std::vector<std::string> problem_names();
-
-// The values of --problem as names: comma lists of names and shell patterns ("nist:*", "mgh:*[!0]"), each
-// name once. A pattern leaves out problems that do not take `dimension` (0: the usual one), with a line in
-// `notes`. Throws std::invalid_argument on an empty item, an unknown name or a pattern that meets nothing.
-std::vector<std::string> resolve_problems(const std::vector<std::string>& lists, int dimension,
-                                          std::vector<std::string>& notes);
-
 // Check sum of what the solver may choose from: names, units and bounds; 16 hexadecimal digits.
 std::string box_check_sum(const std::vector<ParameterInfo>& parameters);
-
-// The dimension meant by 0.
-int usual_dimension(const std::string& classic);
 
 }  // namespace odobench

@@ -16,7 +16,6 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "bench/studies/context.hpp"
-#include "solvers/registry.hpp"
 
 namespace odobench {
 namespace {
@@ -60,6 +59,7 @@ class Dispatcher {
     options.interrupt = asked_.flag();
     options.threads = threads_;
     options.polish = cell.polish;
+    options.solvers = &cells_.catalogue().solvers();
     options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
     const Problem own = problems_[cell.problem];  // a copy has evaluation counts of its own
     const Vector start = cell.random_start ? random_start(own, cell.start_seed) : own.start();
@@ -87,16 +87,12 @@ std::string RunCell::label() const {
   return polish.name.empty() ? solver.text() : solver.text() + "+" + polish.text();
 }
 
-bool RunCell::draws_random_numbers() const {
-  return find_solver(solver.name).stochastic || (!polish.name.empty() && find_solver(polish.name).stochastic);
-}
-
-std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
+std::vector<SolverSpec> resolve_solvers(const Catalogue& catalogue, const std::vector<std::string>& lists,
                                         std::vector<std::string>& notes) {
   std::vector<SolverSpec> specs;
   std::set<std::string> seen;
   const auto take = [&](const SolverSpec& spec) {
-    find_solver(spec.name).make(spec.options, nullptr);  // throws on an unknown name or a bad option
+    catalogue.solver(spec.name).make(spec.options, nullptr);  // throws on an unknown name or a bad option
     if (seen.insert(spec.text()).second)
       specs.push_back(spec);
     else
@@ -105,7 +101,7 @@ std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
   for (const std::string& list : lists)
     for (const SolverSpec& spec : parse_solver_list(list)) {
       if (spec.name == "all" && spec.options.empty())
-        for (const SolverEntry& entry : solver_registry()) take({entry.name, {}});
+        for (const SolverEntry& entry : catalogue.solvers().entries()) take({entry.name, {}});
       else
         take(spec);
     }
@@ -116,7 +112,7 @@ void CellList::add(const CellPlan& plan, std::size_t problem, std::vector<std::s
   std::string once;
   for (std::size_t k = 0; k < plan.solvers.size(); ++k) {
     const SolverSpec& solver = plan.solvers[k];
-    const bool same_each_time = !find_solver(solver.name).stochastic && !plan.random_start;
+    const bool same_each_time = !catalogue_->solver(solver.name).stochastic && !plan.random_start;
     if (same_each_time && plan.repeat > 1) once += (once.empty() ? "" : ", ") + solver.text();
     groups_.push_back({size_, k, plans_.size()});
     size_ += same_each_time ? 1 : static_cast<std::size_t>(plan.repeat);
@@ -147,6 +143,8 @@ RunCell CellList::operator[](std::size_t index) const {
   cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, cell.solver.text(), number});
   cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
   cell.random_start = plan.random_start;
+  cell.draws_random_numbers = catalogue_->solver(cell.solver.name).stochastic ||
+                              (!cell.polish.name.empty() && catalogue_->solver(cell.polish.name).stochastic);
   return cell;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "problems/problem.hpp"
 #include "solvers/solve.hpp"
 
@@ -19,8 +20,9 @@ struct RunCell {
   std::uint64_t start_seed = 0;  // of a random start
   bool random_start = false;
 
-  std::string label() const;          // of its table row: "pso", "pso[swarm=60]+lm"
-  bool draws_random_numbers() const;  // its solver or its polish; a random start apart
+  bool draws_random_numbers = false;  // its solver or its polish; a random start apart
+
+  std::string label() const;  // of its table row: "pso", "pso[swarm=60]+lm"
 };
 
 struct CellPlan {
@@ -32,9 +34,9 @@ struct CellPlan {
   std::string problem, dataset;  // names the seeds are derived from
 };
 
-// Reads comma lists of solvers, expands "all" to the whole registry and checks every option. Throws
+// Reads comma lists of solvers, expands "all" to the whole catalogue and checks every option. Throws
 // std::invalid_argument; a solver listed twice is dropped with a line in `notes`.
-std::vector<SolverSpec> resolve_solvers(const std::vector<std::string>& lists,
+std::vector<SolverSpec> resolve_solvers(const Catalogue& catalogue, const std::vector<std::string>& lists,
                                         std::vector<std::string>& notes);
 
 // Runs of one call at most: their records are kept until the tables are made, up to 20 kB each.
@@ -44,6 +46,9 @@ inline constexpr std::size_t kMostRuns = 200'000;
 // repetitions begin at once.
 class CellList {
  public:
+  // The catalogue outlives the list.
+  explicit CellList(const Catalogue& catalogue) : catalogue_(&catalogue) {}
+
   // One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set,
   // solver, repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the
   // same for every solver. A deterministic solver from the nominal start gives the same answer each time: it
@@ -52,12 +57,14 @@ class CellList {
   void add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes);
 
   std::size_t size() const { return size_; }
+  const Catalogue& catalogue() const { return *catalogue_; }
   RunCell operator[](std::size_t cell) const;
 
  private:
   struct Group {
     std::size_t begin = 0, solver = 0, plan = 0;
   };
+  const Catalogue* catalogue_;
   std::size_t size_ = 0;
   std::vector<CellPlan> plans_;
   std::vector<std::size_t> problems_;  // of each plan

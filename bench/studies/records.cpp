@@ -118,7 +118,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.base_seed = base_seed;
   record.repetition = cell.repetition;
   record.start = cell.random_start ? "random" : "nominal";
-  record.random = cell.draws_random_numbers();
+  record.random = cell.draws_random_numbers;
   record.budget = budget_figures(budget);
   record.termination = to_string(result.termination);
   record.message = result.message;

@@ -15,7 +15,6 @@
 #include "bench/verbs/common_options.hpp"
 #include "reports/regression/changes.hpp"
 #include "solvers/options.hpp"
-#include "solvers/registry.hpp"
 
 namespace odobench {
 namespace {
@@ -113,11 +112,11 @@ void require_worse_direction(const Gate& gate, const std::vector<RunRecord>& rec
 }
 
 // Solvers of other versions that this one does not know may be anything.
-bool draws_random_numbers(const RunRecord& record) {
-  const auto stochastic = [](const std::string& text) {
+bool draws_random_numbers(const RunRecord& record, const Catalogue& catalogue) {
+  const auto stochastic = [&catalogue](const std::string& text) {
     for (const SolverSpec& spec : parse_solver_list(text)) {
       if (spec.name == "zero") continue;  // the filter without any search
-      if (find_solver(spec.name).stochastic) return true;
+      if (catalogue.solver(spec.name).stochastic) return true;
     }
     return false;
   };
@@ -143,14 +142,14 @@ std::vector<Gate> parse_gates(const std::vector<std::string>& lists) {
   return gates;
 }
 
-ExitCode compare_command(const CompareVerbOptions& a) {
+ExitCode compare_command(const CompareVerbOptions& a, const Catalogue& catalogue) {
   const Format format = parse_format(a.format);
   CompareOptions options;
   options.gates = parse_gates(a.fail_on);
   options.metrics = comma_items(a.metrics);
   options.alpha = a.alpha;
   options.gate_foreign_times = a.gate_foreign_times;
-  options.random = draws_random_numbers;
+  options.random = [&catalogue](const RunRecord& record) { return draws_random_numbers(record, catalogue); };
   TerminalWatcher watcher;
   const std::vector<RunRecord> before = read_all_records({a.before}, watcher);
   const std::vector<RunRecord> after = read_all_records({a.after}, watcher);

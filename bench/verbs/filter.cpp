@@ -14,7 +14,7 @@
 namespace odobench {
 namespace {
 
-ExitCode filter_command(const FilterOptions& options) {
+ExitCode filter_command(const FilterOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   EntropyOptions study = options.study;
   refuse_existing("--out", study.out, study.overwrite);
@@ -22,7 +22,7 @@ ExitCode filter_command(const FilterOptions& options) {
   folder.require_free();
   study.checksum = folder.keeps();
   TerminalWatcher watcher(options.quiet);
-  const FilteredRun run = filter_run(study, print_text, watcher, InterruptGuard::stop());
+  const FilteredRun run = filter_run(study, catalogue, print_text, watcher, InterruptGuard::stop());
   const std::vector<Table> tables = filter_tables({run.record});
   folder.keep({run.record}, tables, watcher);
   if (study.out != "-") print_tables(tables, format);

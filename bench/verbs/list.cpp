@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "base/names.hpp"
 #include "bench/catalogue/locations.hpp"
-#include "bench/catalogue/problem_factory.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/studies/scenario_tables.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "datasets/dataset.hpp"
-#include "problems/classic/classic_problems.hpp"
 #include "solvers/options.hpp"
-#include "solvers/registry.hpp"
 
 namespace odobench {
 namespace {
@@ -30,7 +28,7 @@ void add_options(CLI::App& app, ListOptions& o) {
   add_format(app, o.format);
 }
 
-std::vector<Table> solver_tables() {
+std::vector<Table> solver_tables(const Catalogue& catalogue) {
   Table solvers{
       "solvers", "Solvers", {text_column("solver"), text_column("kind"), text_column("summary")}, {}, {}};
   Table options{"options",
@@ -39,7 +37,7 @@ std::vector<Table> solver_tables() {
                  text_column("help")},
                 {},
                 {}};
-  for (const SolverEntry& entry : solver_registry()) {
+  for (const SolverEntry& entry : catalogue.solvers().entries()) {
     solvers.rows.push_back({text_cell(entry.name),
                             text_cell(entry.stochastic ? "stochastic" : "deterministic"),
                             text_cell(entry.summary)});
@@ -60,22 +58,26 @@ Table problem_table(const std::string& id, const std::string& title, const std::
           {note}};
 }
 
-std::vector<Cell> problem_row(const ClassicEntry& entry) {
-  const Problem problem = make_classic_problem(entry.name);
-  const char* derivatives = problem.has_residuals()  ? "residuals, Jacobian"
-                            : problem.has_gradient() ? "gradient"
-                                                     : "none";
-  return {text_cell(entry.name),
-          count_cell(entry.dimension),
-          text_cell(entry.dimensions.text()),
-          entry.residuals > 0 ? count_cell(entry.residuals) : Cell{},
-          text_cell(derivatives),
-          text_cell(entry.best_cost ? fmt::format("{:.10g}", *entry.best_cost) : ""),
-          text_cell(entry.source)};
+std::string derivatives_of(const ProblemEntry& entry) {
+  if (!entry.derivatives.empty()) return entry.derivatives;
+  const Problem problem = entry.make({}).problem;
+  return problem.has_residuals() ? "residuals, Jacobian" : problem.has_gradient() ? "gradient" : "none";
 }
 
-// One table per family.
-std::vector<Table> problem_tables() {
+std::vector<Cell> problem_row(const ProblemEntry& entry) {
+  const ClassicEntry& about = entry.about;
+  return {
+      text_cell(about.name),
+      count_cell(about.dimension),
+      text_cell(about.dimensions.text()),
+      about.residuals > 0 ? count_cell(about.residuals) : Cell{},
+      text_cell(derivatives_of(entry)),
+      entry.takes_data ? Cell{} : text_cell(about.best_cost ? fmt::format("{:.10g}", *about.best_cost) : ""),
+      entry.takes_data ? Cell{} : text_cell(about.source)};
+}
+
+// One table per family: those with a title and a note of their own, then others as they come.
+std::vector<Table> problem_tables(const Catalogue& catalogue) {
   std::vector<Table> tables{
       problem_table("problems.calibration", "Calibration, as in --data=set.json",
                     "Parameters, box and recordings come from the set."),
@@ -85,12 +87,14 @@ std::vector<Table> problem_tables() {
                     "All of them: --problem='nist:*'."),
       problem_table("problems.mgh", "More, Garbow, Hillstrom (1981): mgh:NAME, mgh:NAME/10, mgh:NAME/100",
                     "All of them: --problem='mgh:*'; from the standard starts only: 'mgh:*[!0]'.")};
-  const std::string count = std::to_string(kCalibrationParameters);
-  tables[0].rows.push_back({text_cell("calibration"), count_cell(static_cast<double>(kCalibrationParameters)),
-                            text_cell(count), Cell{}, text_cell("residuals, Jacobian, normal equations"),
-                            Cell{}, Cell{}});
-  for (const ClassicEntry& entry : classic_catalogue())
-    tables[entry.family == "classic" ? 1 : entry.family == "nist" ? 2 : 3].rows.push_back(problem_row(entry));
+  for (const ProblemEntry& entry : catalogue.problems()) {
+    const std::string id = "problems." + entry.about.family;
+    auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.id == id; });
+    if (table == tables.end())
+      table = tables.insert(table, problem_table(id, "Problems of the family " + entry.about.family,
+                                                 "As in --problem=NAME --dimension=N."));
+    table->rows.push_back(problem_row(entry));
+  }
   return tables;
 }
 
@@ -191,16 +195,16 @@ std::vector<Table> set_tables(const std::string& path) {
   return {overview_table(set, path), parameter_table(set), trajectories, recordings};
 }
 
-ExitCode list_command(const ListOptions& options) {
+ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   const std::vector<std::string> known = {"solvers", "problems", "data", "scenarios"};
   if (!options.data.empty() && options.what != "data" && options.what != "scenarios")
     throw std::invalid_argument(
         fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
   if (options.what == "solvers") {
-    print_tables(solver_tables(), format);
+    print_tables(solver_tables(catalogue), format);
   } else if (options.what == "problems") {
-    print_tables(problem_tables(), format);
+    print_tables(problem_tables(catalogue), format);
   } else if (options.what == "data") {
     print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
   } else if (options.what == "scenarios") {

@@ -106,11 +106,11 @@ ExitCode outcome(const RunOptions& options, const SolverRuns& runs) {
   return ExitCode::Success;
 }
 
-ExitCode run_command(const RunOptions& options) {
+ExitCode run_command(const RunOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   TerminalWatcher watcher(options.quiet);
   RunFolder folder(options.out, options.overwrite);
-  const SolverRuns runs = run_solvers(options.study, folder, watcher, InterruptGuard::stop());
+  const SolverRuns runs = run_solvers(options.study, catalogue, folder, watcher, InterruptGuard::stop());
   std::vector<Table> tables;
   if (runs.derivatives) tables.push_back(runs.derivatives->table);
   if (runs.derivatives && !runs.derivatives->agrees) {
@@ -130,9 +130,9 @@ ExitCode run_command(const RunOptions& options) {
 VerbAction add_run(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   add_options(app, *options);
-  return [&app, options] {
+  return [&app, options](const Catalogue& catalogue) {
     if (!options->config.empty()) apply_config(app, options->config);
-    return run_command(*options);
+    return run_command(*options, catalogue);
   };
 }
 

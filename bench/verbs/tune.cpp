@@ -94,13 +94,13 @@ Table result_table(const Tuning& tuning, const std::string& objective) {
   return table;
 }
 
-ExitCode tune_command(const TuneOptions& options) {
+ExitCode tune_command(const TuneOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   refuse_existing("--out", options.out, options.overwrite);
   RunFolder folder(options.records, options.overwrite, "--records");
   folder.require_free();
   TerminalWatcher watcher;
-  const Tuning tuning = tune_filter(options.study, watcher, InterruptGuard::stop());
+  const Tuning tuning = tune_filter(options.study, catalogue, watcher, InterruptGuard::stop());
   if (tuning.settings.size() == 1) {
     warn("not one solver gave a result");
     return ExitCode::CheckFailed;

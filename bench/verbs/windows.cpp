@@ -64,11 +64,11 @@ ExitCode outcome(const WindowRuns& runs, const std::string& out) {
   return ExitCode::CheckFailed;
 }
 
-ExitCode windows_command(const WindowsOptions& options) {
+ExitCode windows_command(const WindowsOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   TerminalWatcher watcher(options.quiet);
   RunFolder folder(options.out, options.overwrite);
-  const WindowRuns runs = run_on_windows(options.study, folder, watcher, InterruptGuard::stop());
+  const WindowRuns runs = run_on_windows(options.study, catalogue, folder, watcher, InterruptGuard::stop());
   const bool machine = format == Format::Json || format == Format::Csv;
   if (folder.keeps()) folder.save(window_tables(runs.records, false));
   print_tables(window_tables(runs.records, machine), format);

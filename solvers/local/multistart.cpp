@@ -8,8 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solvers/registry.hpp"
-
 namespace odobench {
 namespace {
 
@@ -25,6 +23,12 @@ SolverSpec inner_spec(const std::string& text) {
     throw std::invalid_argument(
         fmt::format("solver 'multistart': option solver={}; expected a local method", text));
   return list.front();
+}
+
+std::unique_ptr<Solver> inner_solver(const MultistartOptions& options) {
+  const SolverTable& known = options.known != nullptr ? *options.known : known_solvers();
+  const SolverSpec spec = inner_spec(options.solver);
+  return known.find(spec.name).make(spec.options, nullptr);
 }
 
 // The optima seen so far, the lowest first.
@@ -128,19 +132,17 @@ void MultistartOptions::bind(OptionBinder& binder) {
 }
 
 void MultistartOptions::validate() const {
-  const SolverSpec spec = inner_spec(solver);
+  inner_spec(solver);
   try {
-    find_solver(spec.name).make(spec.options, nullptr);
+    inner_solver(*this);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(
         fmt::format("solver 'multistart': option solver={}; {}", solver, error.what()));
   }
 }
 
-Multistart::Multistart(MultistartOptions options) : options_(std::move(options)) {
-  const SolverSpec spec = inner_spec(options_.solver);
-  inner_ = find_solver(spec.name).make(spec.options, nullptr);
-}
+Multistart::Multistart(MultistartOptions options)
+    : options_(std::move(options)), inner_(inner_solver(options_)) {}
 
 std::string Multistart::why_not(const Problem& problem) const {
   if (options_.sampling == "sobol" && problem.dimension() > kSobolDimensions)
@@ -188,9 +190,12 @@ Outcome Multistart::minimise(Run& run) const {
   return result;
 }
 
-SolverEntry multistart_entry() {
+SolverEntry multistart_entry(const SolverTable& known) {
+  MultistartOptions defaults;
+  defaults.known = &known;
   return make_entry<Multistart, MultistartOptions>(
-      "multistart", "a local method from many starts: distinct optima and the share of their basins", true);
+      "multistart", "a local method from many starts: distinct optima and the share of their basins", true,
+      defaults);
 }
 
 }  // namespace odobench

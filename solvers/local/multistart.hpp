@@ -14,11 +14,13 @@
 // every start.
 #pragma once
 
+#include "solvers/registry.hpp"
 #include "solvers/solver.hpp"
 
 namespace odobench {
 
 struct MultistartOptions {
+  const SolverTable* known = nullptr;  // null: known_solvers()
   std::string solver = "lm";
   int starts = 20;
   std::string sampling = "sobol";
@@ -39,7 +41,8 @@ class Multistart final : public Solver {
   std::unique_ptr<Solver> inner_;
 };
 
-SolverEntry multistart_entry();
+// `known`: where the local method is looked up; outlives what the entry makes.
+SolverEntry multistart_entry(const SolverTable& known);
 
 // m x n points in [-1, 1]^m, one per column.
 Matrix sobol_starts(Eigen::Index m, Eigen::Index n, Random& random);

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
-#include "bench/catalogue/problem_factory.hpp"
 #include "bench/studies/cells.hpp"
 #include "bench/studies/entropy/entropy_statistics.hpp"
 #include "bench/studies/fusion/fusion_runs.hpp"
@@ -34,6 +34,13 @@ std::string refusal(const std::function<void()>& call) {
     return e.what();
   }
   return "";
+}
+
+// What comes with the program.
+const Catalogue& known() {
+  static Catalogue catalogue;
+  if (catalogue.problems().empty()) add_known(catalogue);
+  return catalogue;
 }
 
 TEST(NumberText, WholeNumbersInAnyNotation) {
@@ -66,15 +73,15 @@ TEST(OptionValues, CommaListsKeepEmptyItems) {
 
 TEST(Catalogue, ProblemsByPattern) {
   std::vector<std::string> notes;
-  const std::vector<std::string> all = resolve_problems({"nist:*"}, 0, notes);
+  const std::vector<std::string> all = resolve_problems(known(), {"nist:*"}, 0, notes);
   EXPECT_GT(all.size(), 20u);
   EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), all.size());
-  EXPECT_THAT(resolve_problems({"rosenbrock,sphere", "rosenbrock"}, 0, notes),
+  EXPECT_THAT(resolve_problems(known(), {"rosenbrock,sphere", "rosenbrock"}, 0, notes),
               ElementsAre("rosenbrock", "sphere"));
-  EXPECT_THAT(refusal([&] { resolve_problems({"rosenbrok"}, 0, notes); }),
+  EXPECT_THAT(refusal([&] { resolve_problems(known(), {"rosenbrok"}, 0, notes); }),
               HasSubstr("did you mean 'rosenbrock'?"));
-  EXPECT_NE(refusal([&] { resolve_problems({"sphere,"}, 0, notes); }), "");
-  EXPECT_NE(refusal([&] { resolve_problems({"nowhere:*"}, 0, notes); }), "");
+  EXPECT_NE(refusal([&] { resolve_problems(known(), {"sphere,"}, 0, notes); }), "");
+  EXPECT_NE(refusal([&] { resolve_problems(known(), {"nowhere:*"}, 0, notes); }), "");
 }
 
 TEST(Catalogue, ABoxIsNamesUnitsAndBounds) {
@@ -110,14 +117,14 @@ TEST(ParameterSets, AreNominalKnownOrFiles) {
 TEST(Cells, HaveSeedsOfTheirOwnAndSharedStarts) {
   std::vector<std::string> notes;
   CellPlan plan;
-  plan.solvers = resolve_solvers({"lm,ga,lm"}, notes);
+  plan.solvers = resolve_solvers(known(), {"lm,ga,lm"}, notes);
   EXPECT_EQ(plan.solvers.size(), 2u);  // one of them twice, with a note
   EXPECT_EQ(notes.size(), 1u);
   plan.repeat = 3;
   plan.random_start = true;
   plan.problem = "p";
   plan.dataset = "d";
-  CellList cells;
+  CellList cells(known());
   cells.add(plan, 0, notes);
   ASSERT_EQ(cells.size(), 6u);
   std::set<std::uint64_t> seeds;
@@ -126,11 +133,11 @@ TEST(Cells, HaveSeedsOfTheirOwnAndSharedStarts) {
   EXPECT_EQ(cells[4].seed, derive_seed(1, {"p", "d", "ga", "2"}));
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(cells[k].start_seed, cells[3 + k].start_seed);
   plan.random_start = false;
-  CellList nominal;
+  CellList nominal(known());
   nominal.add(plan, 0, notes);
   EXPECT_EQ(nominal.size(), 4u);  // lm repeats itself: one cell
   plan.repeat = 300'000;
-  EXPECT_THAT(refusal([&] { CellList().add(plan, 0, notes); }), HasSubstr("200"));
+  EXPECT_THAT(refusal([&] { CellList(known()).add(plan, 0, notes); }), HasSubstr("200"));
 }
 
 class Counting : public CellWatcher {
@@ -152,12 +159,12 @@ class Counting : public CellWatcher {
 
 TEST(Cells, GiveTheSameForAnyThreadsAndEndWithTheWatcher) {
   std::vector<std::string> notes;
-  const std::vector<Problem> problems{make_problem("rosenbrock", 0, "", InstructionSet::Baseline).problem};
+  const std::vector<Problem> problems{known().problem("rosenbrock").make({}).problem};
   CellPlan plan;
-  plan.solvers = resolve_solvers({"pso[swarm=8],cmaes,lm"}, notes);
+  plan.solvers = resolve_solvers(known(), {"pso[swarm=8],cmaes,lm"}, notes);
   plan.repeat = 4;
   plan.problem = "rosenbrock";
-  CellList cells;
+  CellList cells(known());
   cells.add(plan, 0, notes);
   Budget budget;
   budget.max_evaluations = 200;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -82,6 +83,13 @@ class Counting final : public Watcher {
   std::mutex mutex_;
 };
 
+// What comes with the program.
+const Catalogue& known() {
+  static Catalogue catalogue;
+  if (catalogue.problems().empty()) add_known(catalogue);
+  return catalogue;
+}
+
 RunFolder nowhere() {
   return RunFolder("", false);
 }
@@ -115,7 +123,7 @@ TEST(SolverStudy, GivesRecordsInTheirOrderForAnyThreads) {
   SolverStudy study = two_solvers();
   Counting watcher;
   RunFolder none = nowhere();
-  const SolverRuns one = run_solvers(study, none, watcher, Stop());
+  const SolverRuns one = run_solvers(study, known(), none, watcher, Stop());
   EXPECT_EQ(labels_of(one.records),
             (std::vector<std::string>{"pso[swarm=8]", "pso[swarm=8]", "pso[swarm=8]", "lm", "pso[swarm=8]",
                                       "pso[swarm=8]", "pso[swarm=8]", "lm"}));
@@ -130,7 +138,7 @@ TEST(SolverStudy, GivesRecordsInTheirOrderForAnyThreads) {
   EXPECT_THAT(watcher.notes.front(), HasSubstr("lm: deterministic, so run once"));
 
   study.threads = 2;
-  const SolverRuns two = run_solvers(study, none, watcher, Stop());
+  const SolverRuns two = run_solvers(study, known(), none, watcher, Stop());
   ASSERT_EQ(two.records.size(), one.records.size());
   for (std::size_t i = 0; i < one.records.size(); ++i) {
     EXPECT_EQ(two.records[i].seed, one.records[i].seed);
@@ -142,7 +150,7 @@ TEST(SolverStudy, AStopAfterTheSecondRunLeavesTwo) {
   const TemporaryFolder folder;
   Counting watcher(2);
   RunFolder kept(folder / "out", false);
-  const SolverRuns runs = run_solvers(two_solvers(), kept, watcher, watcher.stop());
+  const SolverRuns runs = run_solvers(two_solvers(), known(), kept, watcher, watcher.stop());
   EXPECT_TRUE(runs.interrupted);
   EXPECT_EQ(runs.planned, 8u);
   ASSERT_THAT(runs.records, SizeIs(2));
@@ -162,11 +170,11 @@ TEST(SolverStudy, TheFolderHasRecordsAndTracks) {
   SolverRuns runs;
   {
     RunFolder kept(folder / "out", false);
-    runs = run_solvers(study, kept, watcher, Stop());
+    runs = run_solvers(study, known(), kept, watcher, Stop());
     EXPECT_THAT(labels_of(runs.records), ElementsAre("nominal", "lm", "pso[swarm=8]", "pso[swarm=8]"));
     RunFolder second(folder / "out", false);
     Counting other;
-    EXPECT_THROW(run_solvers(study, second, other, Stop()), std::invalid_argument);
+    EXPECT_THROW(run_solvers(study, known(), second, other, Stop()), std::invalid_argument);
     EXPECT_THAT(other.order, IsEmpty());  // refused before anything began
   }
   const std::vector<RunRecord> stored = read_records((folder / "out" / "runs.jsonl").string());
@@ -181,12 +189,91 @@ TEST(SolverStudy, DerivativesThatAgreeComeBeforeTheRuns) {
   study.check_derivatives = true;
   Counting watcher;
   RunFolder none = nowhere();
-  const SolverRuns runs = run_solvers(study, none, watcher, Stop());
+  const SolverRuns runs = run_solvers(study, known(), none, watcher, Stop());
   ASSERT_TRUE(runs.derivatives);
   EXPECT_TRUE(runs.derivatives->agrees);
   EXPECT_THAT(watcher.order, ElementsAre("points", "results", "runs", "end"));
   EXPECT_EQ(watcher.pieces, watcher.total);
-  EXPECT_THROW(run_solvers(study, none, watcher, stopped()), Interruption);
+  EXPECT_THROW(run_solvers(study, known(), none, watcher, stopped()), Interruption);
+}
+
+// (a - 1)^2 + (b + 2)^2 with a gradient that is wrong in b where `fault` is not 0.
+struct TwoSquares {
+  double fault = 0;
+  std::vector<ParameterInfo> list{{"a", "", 0, -4, 4}, {"b", "", 0, -4, 4}};
+  std::string name() const { return "two_squares"; }
+  const std::vector<ParameterInfo>& parameters() const { return list; }
+  double cost(const ConstVectorRef& x) const { return std::pow(x[0] - 1, 2) + std::pow(x[1] + 2, 2); }
+  double cost_and_gradient(const ConstVectorRef& x, VectorRef g) const {
+    g[0] = 2 * (x[0] - 1);
+    g[1] = 2 * (x[1] + 2) + fault;
+    return cost(x);
+  }
+};
+
+// What comes with the program, and one of each of ours.
+void fill(Catalogue& catalogue, double fault) {
+  add_known(catalogue);
+  SolverEntry mine = catalogue.solver("nlopt:bobyqa");
+  mine.name = "mine";
+  catalogue.add(std::move(mine));
+  ClassicEntry about;
+  about.name = "two_squares";
+  about.family = "own";
+  about.dimension = 2;
+  catalogue.add(problem_entry(about, [fault](int) { return Problem(TwoSquares{fault}); }));
+}
+
+TEST(Catalogue, HasNoNameTwiceAndRefusesUnknownOnes) {
+  Catalogue catalogue;
+  fill(catalogue, 0);
+  const std::size_t problems = catalogue.problems().size(), solvers = catalogue.solvers().entries().size();
+  EXPECT_THROW(catalogue.add(SolverEntry(catalogue.solver("lm"))), std::logic_error);
+  EXPECT_THROW(catalogue.add(ProblemEntry(catalogue.problem("two_squares"))), std::logic_error);
+  EXPECT_THROW(add_known(catalogue), std::logic_error);
+  EXPECT_EQ(catalogue.problems().size(), problems);
+  EXPECT_EQ(catalogue.solvers().entries().size(), solvers);
+  EXPECT_EQ(catalogue.problems().front().about.name, "calibration");
+  EXPECT_EQ(catalogue.problems().back().about.name, "two_squares");
+  EXPECT_THROW(known().solver("mine"), std::invalid_argument);
+  EXPECT_THROW(catalogue.problem("two_sqares"), std::invalid_argument);
+}
+
+TEST(Catalogue, WhatIsAddedRunsLikeWhatWasThere) {
+  Catalogue catalogue;
+  fill(catalogue, 0);
+  SolverStudy study;
+  study.solvers = {"mine,multistart[solver=mine,starts=2]"};
+  study.polish = "mine";
+  study.problems = {"two_*"};
+  study.threads = 1;
+  Counting watcher;
+  RunFolder none = nowhere();
+  const SolverRuns runs = run_solvers(study, catalogue, none, watcher, Stop());
+  ASSERT_THAT(runs.records, SizeIs(2));
+  for (const RunRecord& r : runs.records) {
+    EXPECT_EQ(r.problem, "two_squares");
+    EXPECT_NEAR(r.cost.value_or(1), 0, 1e-9) << r.message;
+  }
+  EXPECT_THROW(run_solvers(study, known(), none, watcher, Stop()), std::invalid_argument);
+}
+
+TEST(SolverStudy, NothingRunsWhereDerivativesDisagree) {
+  const TemporaryFolder folder;
+  Catalogue catalogue;
+  fill(catalogue, 0.5);
+  SolverStudy study;
+  study.solvers = {"lm"};
+  study.problems = {"two_squares"};
+  study.check_derivatives = true;
+  Counting watcher;
+  RunFolder kept(folder / "out", false);
+  const SolverRuns runs = run_solvers(study, catalogue, kept, watcher, Stop());
+  ASSERT_TRUE(runs.derivatives);
+  EXPECT_FALSE(runs.derivatives->agrees);
+  EXPECT_THAT(runs.records, IsEmpty());
+  EXPECT_THAT(watcher.order, ElementsAre("points"));
+  EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
 TEST(EvaluationStudy, EvaluatesEachSetAndWarnsOutsideTheBox) {
@@ -216,18 +303,18 @@ TEST(WindowStudy, AStopAfterTheSecondRunLeavesTwo) {
   study.threads = 1;
   RunFolder none = nowhere();
   Counting all;
-  const WindowRuns whole = run_on_windows(study, none, all, Stop());
+  const WindowRuns whole = run_on_windows(study, known(), none, all, Stop());
   EXPECT_EQ(whole.planned, 18u);  // six windows, three methods
   EXPECT_THAT(whole.records, SizeIs(18));
   EXPECT_EQ(all.labels.back(), "random5 relaxed");
   EXPECT_THAT(all.ended, SizeIs(18));
 
   Counting watcher(2);
-  const WindowRuns part = run_on_windows(study, none, watcher, watcher.stop());
+  const WindowRuns part = run_on_windows(study, known(), none, watcher, watcher.stop());
   EXPECT_TRUE(part.interrupted);
   EXPECT_THAT(labels_of(part.records), ElementsAre("coordinate", "exact"));
   EXPECT_EQ(part.records[1].cost, whole.records[1].cost);
-  EXPECT_THROW(run_on_windows(study, none, watcher, stopped()), Interruption);
+  EXPECT_THROW(run_on_windows(study, known(), none, watcher, stopped()), Interruption);
 }
 
 TEST(FilterStudy, AStopLeavesTheWindowsSoFar) {
@@ -239,7 +326,7 @@ TEST(FilterStudy, AStopLeavesTheWindowsSoFar) {
   options.out = (folder / "out.csv").string();
   const TextSink never = [](const std::string&) { FAIL(); };
   Counting watcher(7);
-  const FilteredRun run = filter_run(options, never, watcher, watcher.stop());
+  const FilteredRun run = filter_run(options, known(), never, watcher, watcher.stop());
   EXPECT_TRUE(run.interrupted);
   EXPECT_EQ(run.windows, 7);
   EXPECT_EQ(run.record.termination, "interrupted");
@@ -251,7 +338,7 @@ TEST(FilterStudy, AStopLeavesTheWindowsSoFar) {
   std::string text;
   Counting all;
   const FilteredRun whole = filter_run(
-      options, [&text](const std::string& part) { text += part; }, all, Stop());
+      options, known(), [&text](const std::string& part) { text += part; }, all, Stop());
   EXPECT_FALSE(whole.interrupted);
   EXPECT_EQ(whole.windows, 56);
   EXPECT_EQ(lines(text).size(), 57u);
@@ -313,9 +400,9 @@ TEST(TuningStudy, RefusesAndStopsBeforeItFits) {
   study.sensors = sensors_file("heading_only.json");
   study.filter = "ekf-smoothed";
   Counting watcher;
-  EXPECT_THROW(tune_filter(study, watcher, Stop()), std::invalid_argument);
+  EXPECT_THROW(tune_filter(study, known(), watcher, Stop()), std::invalid_argument);
   study.filter = "ekf";
-  EXPECT_THROW(tune_filter(study, watcher, stopped()), Interruption);
+  EXPECT_THROW(tune_filter(study, known(), watcher, stopped()), Interruption);
   EXPECT_THAT(watcher.order, IsEmpty());
 }
 

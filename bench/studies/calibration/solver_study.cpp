@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "bench/catalogue/problem_factory.hpp"
 #include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/records.hpp"
@@ -14,13 +13,13 @@
 namespace odobench {
 namespace {
 
-CellPlan make_plan(const SolverStudy& study, std::vector<std::string>& notes) {
+CellPlan make_plan(const SolverStudy& study, const Catalogue& catalogue, std::vector<std::string>& notes) {
   CellPlan plan;
   plan.solvers = resolve_solvers(
-      study.solvers.empty() ? std::vector<std::string>{"lm,ip,ga,pso"} : study.solvers, notes);
+      catalogue, study.solvers.empty() ? std::vector<std::string>{"lm,ip,ga,pso"} : study.solvers, notes);
   if (!study.polish.empty()) {
     std::vector<std::string> dropped;
-    const std::vector<SolverSpec> polish = resolve_solvers({study.polish}, dropped);
+    const std::vector<SolverSpec> polish = resolve_solvers(catalogue, {study.polish}, dropped);
     if (polish.size() != 1)
       throw std::invalid_argument(fmt::format("--polish={}: expected one solver", study.polish));
     plan.polish = polish.front();
@@ -31,22 +30,25 @@ CellPlan make_plan(const SolverStudy& study, std::vector<std::string>& notes) {
   return plan;
 }
 
-std::vector<LoadedProblem> load_problems(const SolverStudy& study, InstructionSet kernel,
-                                         std::vector<std::string>& notes) {
-  const std::vector<std::string> names =
-      resolve_problems(study.problems.empty() ? std::vector<std::string>{"calibration"} : study.problems,
-                       study.dimension, notes);
-  if (!study.data.empty() && std::find(names.begin(), names.end(), "calibration") == names.end())
+std::vector<LoadedProblem> load_problems(const SolverStudy& study, const Catalogue& catalogue,
+                                         InstructionSet kernel, std::vector<std::string>& notes) {
+  const std::vector<std::string> names = resolve_problems(
+      catalogue, study.problems.empty() ? std::vector<std::string>{"calibration"} : study.problems,
+      study.dimension, notes);
+  const auto takes_data = [&](const std::string& name) { return catalogue.problem(name).takes_data; };
+  if (!study.data.empty() && std::none_of(names.begin(), names.end(), takes_data))
     throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", names.front()));
   std::vector<LoadedProblem> loaded;
   for (const std::string& name : names)
-    loaded.push_back(make_problem(name, study.dimension, name == "calibration" ? study.data : "", kernel));
+    loaded.push_back(
+        catalogue.problem(name).make({study.dimension, takes_data(name) ? study.data : "", kernel}));
   return loaded;
 }
 
 // The cells of every problem, problem by problem. Remarks are the same for all.
-CellList plan_all(CellPlan plan, const std::vector<LoadedProblem>& loaded, std::vector<std::string>& notes) {
-  CellList cells;
+CellList plan_all(CellPlan plan, const Catalogue& catalogue, const std::vector<LoadedProblem>& loaded,
+                  std::vector<std::string>& notes) {
+  CellList cells(catalogue);
   std::vector<std::string> repeated;
   for (std::size_t k = 0; k < loaded.size(); ++k) {
     plan.problem = loaded[k].name();
@@ -83,12 +85,13 @@ void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded,
 
 }  // namespace
 
-SolverRuns run_solvers(const SolverStudy& study, RunFolder& folder, Watcher& watcher, const Stop& stop) {
+SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, RunFolder& folder,
+                       Watcher& watcher, const Stop& stop) {
   std::vector<std::string> notes;
-  const CellPlan plan = make_plan(study, notes);
+  const CellPlan plan = make_plan(study, catalogue, notes);
   const InstructionSet kernel = kernel_in_force(study.kernel);
-  const std::vector<LoadedProblem> loaded = load_problems(study, kernel, notes);
-  const CellList cells = plan_all(plan, loaded, notes);
+  const std::vector<LoadedProblem> loaded = load_problems(study, catalogue, kernel, notes);
+  const CellList cells = plan_all(plan, catalogue, loaded, notes);
   const RunContext context = run_context(thread_count(study.threads), kernel);
   folder.require_free();
   for (const std::string& text : notes) watcher.note(text);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/calibration/derivative_table.hpp"
 #include "bench/studies/run_folder.hpp"
@@ -42,6 +43,7 @@ struct SolverRuns {
 // each record as its run ends, in the end all in their order and the tracks of what tables show. After a stop
 // no further run begins; those that have begun end early and are recorded. Throws std::invalid_argument on
 // what makes no sense (nothing is run or written then), DataError on a bad set.
-SolverRuns run_solvers(const SolverStudy& study, RunFolder& folder, Watcher& watcher, const Stop& stop);
+SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, RunFolder& folder,
+                       Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench

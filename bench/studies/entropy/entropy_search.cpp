@@ -7,15 +7,15 @@
 #include "base/random.hpp"
 #include "problems/entropy/window_problem.hpp"
 #include "solvers/lattice/ternary_search.hpp"
-#include "solvers/registry.hpp"
 
 namespace odobench {
 
-RegistrySearch::RegistrySearch(const ProfileForm& profile, SolverSpec solver, const Budget& budget,
-                               std::uint64_t seed, const Stop& stop)
+RegistrySearch::RegistrySearch(const ProfileForm& profile, const Catalogue& catalogue, SolverSpec solver,
+                               const Budget& budget, std::uint64_t seed, const Stop& stop)
     : profile_(profile), solver_(std::move(solver)), stop_(stop), seed_(seed) {
   options_.budget = budget;
   options_.interrupt = stop.flag();
+  options_.solvers = &catalogue.solvers();
 }
 
 void RegistrySearch::observe(const EntropySample& sample) {
@@ -52,8 +52,9 @@ SearchResult RegistrySearch::minimise(std::span<const double> g, std::span<doubl
   return found;
 }
 
-FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, InstructionSet kernel, const Stop& stop) {
+FilterMethod make_filter_method(const std::string& text, const Catalogue& catalogue,
+                                const ProfileForm& profile, const Budget& budget, std::uint64_t seed,
+                                InstructionSet kernel, const Stop& stop) {
   const std::vector<SolverSpec> list = parse_solver_list(text);
   if (list.size() != 1) throw std::invalid_argument(fmt::format("--solver={}: expected one solver", text));
   FilterMethod method;
@@ -69,8 +70,8 @@ FilterMethod make_filter_method(const std::string& text, const ProfileForm& prof
   } else if (plain && method.spec.name == "relaxed") {
     method.search = box_relaxation(profile.blocks());
   } else {
-    find_solver(method.spec.name).make(method.spec.options, nullptr);  // throws on a bad name or option
-    auto search = std::make_unique<RegistrySearch>(profile, method.spec, budget, seed, stop);
+    catalogue.solver(method.spec.name).make(method.spec.options, nullptr);  // throws on a bad name or option
+    auto search = std::make_unique<RegistrySearch>(profile, catalogue, method.spec, budget, seed, stop);
     method.registry = search.get();
     method.search = std::move(search);
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "problems/block_quadratic.hpp"
 #include "problems/entropy/profile_form.hpp"
 #include "problems/instruction_set.hpp"
@@ -19,8 +20,8 @@ namespace odobench {
 class RegistrySearch final : public BlockSearch {
  public:
   // Seeds are derived from `seed`, the solver and the number of the window.
-  RegistrySearch(const ProfileForm& profile, SolverSpec solver, const Budget& budget, std::uint64_t seed,
-                 const Stop& stop);
+  RegistrySearch(const ProfileForm& profile, const Catalogue& catalogue, SolverSpec solver,
+                 const Budget& budget, std::uint64_t seed, const Stop& stop);
 
   // Every sample that the filter gets, before it gets it.
   void observe(const EntropySample& sample);
@@ -46,7 +47,8 @@ struct FilterMethod {
 
 // `text` as typed: coordinate, exact, relaxed, zero, or a solver of the registry. `profile` outlives the
 // result. Throws std::invalid_argument on what is none of them or several.
-FilterMethod make_filter_method(const std::string& text, const ProfileForm& profile, const Budget& budget,
-                                std::uint64_t seed, InstructionSet kernel, const Stop& stop);
+FilterMethod make_filter_method(const std::string& text, const Catalogue& catalogue,
+                                const ProfileForm& profile, const Budget& budget, std::uint64_t seed,
+                                InstructionSet kernel, const Stop& stop);
 
 }  // namespace odobench

@@ -19,7 +19,6 @@
 #include "bench/studies/entropy/entropy_statistics.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 #include "solvers/lattice/ternary_search.hpp"
-#include "solvers/registry.hpp"
 
 namespace odobench {
 namespace {
@@ -90,12 +89,15 @@ class InputRows {
 // Everything that happens to a window.
 class FilterRun {
  public:
-  FilterRun(const EntropyOptions& options, const FilterSetup& setup, InstructionSet kernel,
-            const FilterRunReader& data, const TextSink& standard_output, const Stop& stop)
-      : setup_(setup),
+  FilterRun(const EntropyOptions& options, const Catalogue& catalogue, const FilterSetup& setup,
+            InstructionSet kernel, const FilterRunReader& data, const TextSink& standard_output,
+            const Stop& stop)
+      : catalogue_(catalogue),
+        setup_(setup),
         file_name_(data.file()),
         profile_(setup.constants),
-        method_(make_filter_method(options.solver, profile_, options.budget, options.seed, kernel, stop)),
+        method_(make_filter_method(options.solver, catalogue, profile_, options.budget, options.seed, kernel,
+                                   stop)),
         filter_(profile_, method_.search.get()),
         converter_(setup),
         noise_(setup),
@@ -164,6 +166,7 @@ class FilterRun {
 
   std::size_t rows_count() const { return static_cast<std::size_t>(setup_.constants.samples); }
 
+  const Catalogue& catalogue_;
   FilterSetup setup_;
   const std::string file_name_;
   ProfileForm profile_;
@@ -191,7 +194,7 @@ RunRecord FilterRun::record(double seconds) const {
   r.label = method_.spec.text();
   r.kind = "run";
   r.solver = method_.spec.name;
-  if (r.solver != "zero") find_solver(r.solver).make(method_.spec.options, &r.options);
+  if (r.solver != "zero") catalogue_.solver(r.solver).make(method_.spec.options, &r.options);
   r.start = "nominal";
   r.cost = -method_meter_.hamiltonian_mean();
   r.evaluations = r.cost_evaluations = method_meter_.evaluations();
@@ -250,12 +253,13 @@ void describe_run(const EntropyOptions& options, const FilterSetup& setup, const
 
 }  // namespace
 
-FilteredRun filter_run(const EntropyOptions& options, const TextSink& standard_output, Watcher& watcher,
-                       const Stop& stop) {
+FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue,
+                       const TextSink& standard_output, Watcher& watcher, const Stop& stop) {
   const InstructionSet kernel = kernel_in_force(options.kernel);
   FilterSetup setup = make_filter_setup(options);
   // Before the data are read, which may take long or come but once.
-  make_filter_method(options.solver, profile_of(setup.constants), options.budget, options.seed, kernel, stop);
+  make_filter_method(options.solver, catalogue, profile_of(setup.constants), options.budget, options.seed,
+                     kernel, stop);
   const std::string begin_utc = utc_now();
   const Clock::time_point begin = Clock::now();
   InputRows rows(options, setup, stop);
@@ -265,7 +269,7 @@ FilteredRun filter_run(const EntropyOptions& options, const TextSink& standard_o
         *options.theta, options.data));
   setup.constants.dt = rows.data().dt();
   watcher.results_begin();
-  FilterRun run(options, setup, kernel, rows.data(), standard_output, stop);
+  FilterRun run(options, catalogue, setup, kernel, rows.data(), standard_output, stop);
   watcher.count_begins("windows", 0);
   FilterInput input;
   while (rows.next(input) && run.push(input))

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/studies/entropy/entropy_output.hpp"
 #include "bench/studies/entropy/entropy_setup.hpp"
 #include "bench/studies/watcher.hpp"
@@ -22,7 +23,7 @@ struct FilteredRun {
 // when it throws. After a stop the windows so far are the result. The watcher counts windows. Throws
 // std::invalid_argument on options that make no sense, DataError "file:line: ..." on bad data, Interruption
 // when no window was finished.
-FilteredRun filter_run(const EntropyOptions& options, const TextSink& standard_output, Watcher& watcher,
-                       const Stop& stop);
+FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue,
+                       const TextSink& standard_output, Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench

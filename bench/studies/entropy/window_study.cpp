@@ -105,8 +105,8 @@ RunRecord window_record(const LoadedWindow& w, const Result& result, RunRecord r
   return record;
 }
 
-CellList plan_cells(const CellPlan& plan, std::vector<std::string>& notes) {
-  CellList cells;
+CellList plan_cells(const CellPlan& plan, const Catalogue& catalogue, std::vector<std::string>& notes) {
+  CellList cells(catalogue);
   cells.add(plan, 0, notes);
   return cells;
 }
@@ -132,10 +132,11 @@ std::vector<EntropyWindow> chosen(std::vector<EntropyWindow> windows, const std:
   return some;
 }
 
-CellPlan make_plan(const WindowStudy& study, std::vector<std::string>& notes) {
+CellPlan make_plan(const WindowStudy& study, const Catalogue& catalogue, std::vector<std::string>& notes) {
   CellPlan plan;
   plan.solvers = resolve_solvers(
-      study.solvers.empty() ? std::vector<std::string>{"coordinate,exact,relaxed"} : study.solvers, notes);
+      catalogue, study.solvers.empty() ? std::vector<std::string>{"coordinate,exact,relaxed"} : study.solvers,
+      notes);
   plan.repeat = study.repeat;
   plan.base_seed = study.seed;
   plan.problem = kWindowProblem;
@@ -144,11 +145,11 @@ CellPlan make_plan(const WindowStudy& study, std::vector<std::string>& notes) {
 
 // All runs of one window, numbered from `first`.
 void run_window(const WindowStudy& study, const LoadedWindow& window, CellPlan plan,
-                const RunContext& context, std::size_t first, RunFolder& folder, Watcher& watcher,
-                const Stop& stop, std::vector<RunRecord>& records) {
+                const Catalogue& catalogue, const RunContext& context, std::size_t first, RunFolder& folder,
+                Watcher& watcher, const Stop& stop, std::vector<RunRecord>& records) {
   std::vector<std::string> said;  // of the plan for all windows
   plan.dataset = window.dataset;
-  const CellList cells = plan_cells(plan, said);
+  const CellList cells = plan_cells(plan, catalogue, said);
   const auto record = [&](const RunCell& cell, const Result& result, const std::string& time_utc) {
     return window_record(
         window, result,
@@ -161,15 +162,16 @@ void run_window(const WindowStudy& study, const LoadedWindow& window, CellPlan p
 
 }  // namespace
 
-WindowRuns run_on_windows(const WindowStudy& study, RunFolder& folder, Watcher& watcher, const Stop& stop) {
+WindowRuns run_on_windows(const WindowStudy& study, const Catalogue& catalogue, RunFolder& folder,
+                          Watcher& watcher, const Stop& stop) {
   std::vector<std::string> notes;
-  const CellPlan plan = make_plan(study, notes);
+  const CellPlan plan = make_plan(study, catalogue, notes);
   const std::vector<EntropyWindow> windows = chosen(load_entropy_windows(study.file), study.only);
   require_finite(windows, study.file);
   const std::string stem = std::filesystem::path(study.file).stem().string();
   const std::string sha256 = sha256_of_file(study.file);
   const RunContext context = run_context(thread_count(study.threads), kernel_in_force(study.kernel));
-  const CellList of_each = plan_cells(plan, notes);
+  const CellList of_each = plan_cells(plan, catalogue, notes);
   const std::size_t per_window = of_each.size();
   if (windows.size() > kMostRuns / per_window)
     throw std::invalid_argument(
@@ -190,7 +192,7 @@ WindowRuns run_on_windows(const WindowStudy& study, RunFolder& folder, Watcher& 
     if (stop.requested()) break;  // what results are measured against is not known
     window.dataset = stem + "/" + windows[i].id;
     window.sha256 = sha256;
-    run_window(study, window, plan, context, i * per_window, folder, watcher, stop, runs.records);
+    run_window(study, window, plan, catalogue, context, i * per_window, folder, watcher, stop, runs.records);
   }
   watcher.runs_end();
   runs.interrupted = stop.requested();

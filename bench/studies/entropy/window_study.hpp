@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/run_folder.hpp"
 #include "bench/studies/watcher.hpp"
@@ -35,6 +36,7 @@ struct WindowRuns {
 // relaxation and zero increments. The folder gets each record as its run ends. After a stop no further run
 // begins. Throws std::invalid_argument on names that are none, DataError on a bad file, Interruption when no
 // run was made.
-WindowRuns run_on_windows(const WindowStudy& study, RunFolder& folder, Watcher& watcher, const Stop& stop);
+WindowRuns run_on_windows(const WindowStudy& study, const Catalogue& catalogue, RunFolder& folder,
+                          Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench

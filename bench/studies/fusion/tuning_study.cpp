@@ -123,8 +123,8 @@ std::vector<RunRecord> tuning_records(const Problem& problem, const std::vector<
 
 // The given setting, then what each solver found from there.
 std::vector<TunedSetting> fitted(const Problem& problem, const FusionTuningProblem& model,
-                                 const std::vector<SolverSpec>& solvers, const TuningStudy& study,
-                                 std::uint64_t seed, const std::string& dataset,
+                                 const std::vector<SolverSpec>& solvers, const Catalogue& catalogue,
+                                 const TuningStudy& study, std::uint64_t seed, const std::string& dataset,
                                  std::vector<std::string>& remarks, Watcher& watcher, const Stop& stop) {
   std::vector<TunedSetting> settings{{"given", problem.start(), model.cost(problem.start()), 1, "", {}}};
   for (const SolverSpec& spec : solvers) {
@@ -132,6 +132,7 @@ std::vector<TunedSetting> fitted(const Problem& problem, const FusionTuningProbl
     solve_options.budget.max_evaluations = study.max_evaluations;
     solve_options.seed = derive_seed(seed, {"tune", dataset, spec.text()});
     solve_options.interrupt = stop.flag();
+    solve_options.solvers = &catalogue.solvers();
     const Result result = solve(problem, spec, problem.start(), solve_options);
     stop.check();
     if (!result.usable()) {
@@ -150,12 +151,12 @@ std::vector<TunedSetting> fitted(const Problem& problem, const FusionTuningProbl
 
 }  // namespace
 
-Tuning tune_filter(const TuningStudy& study, Watcher& watcher, const Stop& stop) {
+Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher& watcher, const Stop& stop) {
   const FilterChoice filter = tuned_filter(study.filter);
   const TuningObjective objective = objective_of(study.objective);
   std::vector<std::string> notes;
   const std::vector<SolverSpec> solvers = resolve_solvers(
-      study.solvers.empty() ? std::vector<std::string>{"nlopt:bobyqa"} : study.solvers, notes);
+      catalogue, study.solvers.empty() ? std::vector<std::string>{"nlopt:bobyqa"} : study.solvers, notes);
   SensorsFile sensors = read_sensors(study.sensors);
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(study.data, kernel_in_force(study.kernel));
@@ -175,8 +176,8 @@ Tuning tune_filter(const TuningStudy& study, Watcher& watcher, const Stop& stop)
   const Problem problem(model);
 
   Tuning tuning{problem.parameters(), {}, {}, s.training.size(), s.held_out.size(), {}, {}, {}};
-  tuning.settings =
-      fitted(problem, *model, solvers, study, seed, loaded.dataset_name(), tuning.remarks, watcher, stop);
+  tuning.settings = fitted(problem, *model, solvers, catalogue, study, seed, loaded.dataset_name(),
+                           tuning.remarks, watcher, stop);
   for (TunedSetting& setting : tuning.settings) {
     SensorsFile changed = sensors;
     std::vector<std::vector<SensorStream>> streams = judge_streams;

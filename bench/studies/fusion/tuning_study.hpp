@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
 #include "bench/studies/fusion/fusion_runs.hpp"
 #include "bench/studies/watcher.hpp"
 #include "problems/problem.hpp"
@@ -49,6 +50,6 @@ struct Tuning {
 // The first drive of each trajectory trains; the others judge, or the same ones where there are no others.
 // Solvers without a result are told as warnings. Throws std::invalid_argument on names that are none,
 // DataError on bad files and where a filter breaks down, Interruption when it is to stop.
-Tuning tune_filter(const TuningStudy& study, Watcher& watcher, const Stop& stop);
+Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher& watcher, const Stop& stop);
 
 }  // namespace odobench
