@@ -25,9 +25,9 @@ void line(const char* kind, const std::string& text) {
 // https://no-color.org: any value but the empty one asks for plain text.
 bool bold_is_welcome() {
   const char* no_color = std::getenv("NO_COLOR");
-  const char* terminal = std::getenv("TERM");
+  const char* term = std::getenv("TERM");
   return ::isatty(STDOUT_FILENO) == 1 && (no_color == nullptr || *no_color == 0) &&
-         (terminal == nullptr || std::string(terminal) != "dumb");
+         (term == nullptr || std::string(term) != "dumb");
 }
 
 }  // namespace
