@@ -200,12 +200,13 @@ RunRecord FilterRun::record(double seconds) const {
   r.evaluations = r.cost_evaluations = method_meter_.evaluations();
   r.iterations = method_meter_.iterations();
   r.seconds = seconds;
-  method_meter_.report(r.statistics);
-  if (with_truth_) noise_.report(r.statistics);
+  method_meter_.report(r.measures);
+  if (with_truth_) noise_.report(r.measures);
   signals_.report(r.series);
   method_meter_.histogram().report(r.series);
-  r.statistics["rows"] = static_cast<double>(count_);
-  r.statistics["windows_per_second"] = static_cast<double>(windows()) / seconds;
+  r.measures.put({"rows", static_cast<double>(count_), ""});
+  r.measures.put(
+      {"windows_per_second", static_cast<double>(windows()) / seconds, "1/s", Better::Higher, "", true});
   return r;
 }
 

@@ -81,18 +81,18 @@ LoadedWindow load(const EntropyWindow& window, const std::string& file, const St
   }
 }
 
-void add_statistics(const LoadedWindow& w, const Vector& t, RunRecord& record) {
+void add_measures(const LoadedWindow& w, const Vector& t, RunRecord& record) {
   EntropyState state;
-  record.statistics["hamiltonian"] = value_at(w.window, t, state);
-  record.statistics["r1"] = state.r1;
-  record.statistics["sx1"] = state.sx1;
-  record.statistics["sy1"] = state.sy1;
-  record.statistics["ax12"] = state.ax12;
-  record.statistics["ay12"] = state.ay12;
-  record.statistics["hamiltonian_rounded"] = value_at(w.window, t.array().round().matrix(), state);
-  record.statistics["hamiltonian_zero"] = w.zero;
-  record.statistics["hamiltonian_exact"] = w.exact;
-  record.statistics["hamiltonian_relaxed"] = w.relaxed;
+  record.measures.put({"hamiltonian", value_at(w.window, t, state), ""});
+  record.measures.put({"r1", state.r1, "m"});
+  record.measures.put({"sx1", state.sx1, "m"});
+  record.measures.put({"sy1", state.sy1, "m"});
+  record.measures.put({"ax12", state.ax12, "m/s^2"});
+  record.measures.put({"ay12", state.ay12, "m/s^2"});
+  record.measures.put({"hamiltonian_rounded", value_at(w.window, t.array().round().matrix(), state), ""});
+  record.measures.put({"hamiltonian_zero", w.zero, ""});
+  record.measures.put({"hamiltonian_exact", w.exact, ""});
+  record.measures.put({"hamiltonian_relaxed", w.relaxed, ""});
 }
 
 // `record`: of the run, without what it says of the window.
@@ -100,8 +100,8 @@ RunRecord window_record(const LoadedWindow& w, const Result& result, RunRecord r
   record.dataset = w.dataset;
   record.dataset_sha256 = w.sha256;
   record.group = w.window.group;
-  record.statistics["samples"] = w.window.constants.samples;
-  if (result.usable()) add_statistics(w, result.x, record);
+  record.measures.put({"samples", static_cast<double>(w.window.constants.samples), ""});
+  if (result.usable()) add_measures(w, result.x, record);
   return record;
 }
 

@@ -113,9 +113,9 @@ std::vector<RunRecord> tuning_records(const Problem& problem, const std::vector<
     record.cost = s.cost;
     record.evaluations = record.cost_evaluations = static_cast<std::int64_t>(s.evaluations);
     record.errors = s.judged.errors;
-    record.statistics = {{"rmse_position", s.judged.row.rmse_position},
-                         {"rmse_heading", s.judged.row.rmse_heading},
-                         {"nees_mean", s.judged.row.mean_nees}};
+    record.measures = {{"rmse_position", s.judged.row.rmse_position, "m"},
+                       {"rmse_heading", s.judged.row.rmse_heading, "rad"},
+                       {"nees_mean", s.judged.row.mean_nees, ""}};
     records.push_back(std::move(record));
   }
   return records;

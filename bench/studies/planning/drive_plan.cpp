@@ -161,7 +161,7 @@ std::string too_few_replicas(const Selection& selection, std::size_t parameters,
       (parameters + drives - 1) / drives + 1);
 }
 
-// The relative standard deviations and directions of the plan; what is not determined has no statistic.
+// The relative standard deviations and directions of the plan; what is not determined has no measure.
 RunRecord plan_record(const simulate::RecordingScenario& s, const PlanAnalysis& a,
                       const std::vector<ParameterInfo>& parameters, const DrivePlan& study,
                       InstructionSet kernel) {
@@ -172,15 +172,17 @@ RunRecord plan_record(const simulate::RecordingScenario& s, const PlanAnalysis& 
                                   run_context(thread_count(study.threads), kernel));
   record.message = "what calibrations on these drives would determine";
   record.seed = record.base_seed = study.seed;
-  record.statistics["wanted"] = study.wanted;
+  record.measures.put({"wanted", study.wanted, ""});
   double determined = 0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double deviation = a.standard_deviations[static_cast<Eigen::Index>(i)];
     record.series["standard_deviations"].push_back(deviation);
-    if (std::isfinite(deviation)) record.statistics["deviation." + parameters[i].name] = deviation;
+    if (std::isfinite(deviation))
+      record.measures.put(
+          {"deviation." + parameters[i].name, deviation, "", Better::None, parameters[i].name});
     determined += deviation <= study.wanted ? 1 : 0;
   }
-  record.statistics["determined"] = determined;
+  record.measures.put({"determined", determined, ""});
   for (const Direction& d : a.directions) {
     record.series["singular_values"].push_back(d.singular_value);
     record.series["direction_deviations"].push_back(d.standard_deviation);

@@ -25,7 +25,7 @@ struct DrivePlan {
 };
 
 // One record: the relative standard deviations and directions of the plan (what is not determined has no
-// statistic), and drives proposed one after the other until all are `wanted`. The drives' noise is taken from
+// measure), and drives proposed one after the other until all are `wanted`. The drives' noise is taken from
 // `replicas` simulations of each. Throws std::invalid_argument on unknown names and on too much work,
 // DataError on a bad scenario, Interruption when it is to stop.
 std::vector<RunRecord> plan_drives(const DrivePlan& study, Watcher& watcher, const Stop& stop);

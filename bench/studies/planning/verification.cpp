@@ -100,8 +100,9 @@ std::vector<RunRecord> verification_records(const simulate::RecordingScenario& s
         return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
             .mean;
       };
-      record.statistics[kArrivalPosition + s.drives[t].name] = at(0);
-      record.statistics[kArrivalHeading + s.drives[t].name] = at(1);
+      const std::string& drive = s.drives[t].name;
+      record.measures.put({kArrivalPosition + drive, at(0), "m", Better::None, drive});
+      record.measures.put({kArrivalHeading + drive, at(1), "rad", Better::None, drive});
     }
     records.push_back(std::move(record));
   }
