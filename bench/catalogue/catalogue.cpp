@@ -23,7 +23,7 @@ ProblemEntry calibration_entry() {
   entry.make = [](const ProblemRequest& request) {
     if (request.dimension != 0)
       throw std::invalid_argument("--dimension: the calibration problem has the dimension of its robot");
-    return load_calibration(request.data, request.kernel);
+    return load_calibration(request.data, request.kernel, request.calibration);
   };
   return entry;
 }

@@ -17,6 +17,7 @@ namespace odobench {
 struct ProblemRequest {
   int dimension = 0;  // 0: the usual one
   std::string data;   // path of a data set; "": the problem's own
+  CalibrationChoice calibration;
   InstructionSet kernel = InstructionSet::Baseline;
 };
 

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "base/error.hpp"
 #include "base/range.hpp"
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "bench/catalogue/locations.hpp"
 #include "datasets/native/columns.hpp"
+#include "datasets/native/robot_json.hpp"
 
 namespace odobench {
 
@@ -23,35 +26,100 @@ std::vector<ParameterInfo> robot_parameters(const Robot& robot) {
 namespace {
 
 // A set may hold any finite number; sums of squares may not.
-void require_range(const std::string& path, const std::vector<Recording>& recordings) {
+void require_range(const std::string& path, const std::vector<Recording>& recordings, int schema) {
   for (const Recording& r : recordings)
-    for_each_value_column(r, 1, [&](const std::string& name, const char*, const std::vector<double>& values) {
-      for (std::size_t k = 0; k < values.size(); ++k)
-        if (!in_range(values[k]))
-          throw DataError(fmt::format(
-              "{}: recording '{}': {}, sample {}: found {}, expected a number of at most {:g} in size", path,
-              r.id, name, k, values[k], kLargestNumber));
-    });
+    for_each_value_column(
+        r, schema, [&](const std::string& name, const char*, const std::vector<double>& values) {
+          for (std::size_t k = 0; k < values.size(); ++k)
+            if (!in_range(values[k]))
+              throw DataError(fmt::format(
+                  "{}: recording '{}': {}, sample {}: found {}, expected a number of at most {:g} in size",
+                  path, r.id, name, k, values[k], kLargestNumber));
+        });
+}
+
+// The mean of the wheels' velocities is the twist of a robot whose wheels stand evenly round the origin. Said
+// from 2 % of their mean distance: calibrated robots are never quite even.
+void remark_on_mean(const Robot& robot, std::vector<std::string>& remarks) {
+  constexpr double kUneven = 0.02;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  std::vector<double> distances;
+  double mean = 0;
+  const auto wheels = static_cast<double>(robot.table.wheels.size());
+  for (std::size_t i = 0; i < robot.table.wheels.size(); ++i) {
+    Eigen::Vector2d place(robot.table.wheels[i].x, robot.table.wheels[i].y);
+    for (const BoundParameter& p : robot.table.parameters)
+      for (const Binding& b : p.bindings) {
+        if (b.wheel != i) continue;
+        if (b.field == WheelField::X) place[0] += b.factor * p.parameter.nominal;
+        if (b.field == WheelField::Y) place[1] += b.factor * p.parameter.nominal;
+      }
+    centre += place / wheels;
+    distances.push_back(place.norm());
+    mean += distances.back() / wheels;
+  }
+  double spread = 0;
+  for (const double d : distances) spread = std::max(spread, std::abs(d - mean));
+  if (centre.norm() <= kUneven * mean && spread <= kUneven * mean) return;
+  remarks.push_back(fmt::format(
+      "the wheels do not stand evenly round the robot's origin (their centre is {:.3f} m away, their "
+      "distances "
+      "differ by up to {:.3f} m from the mean): the published mean of their velocities is not the robot's "
+      "velocity then; --twist=least_squares is",
+      centre.norm(), spread));
+}
+
+CalibrationOptions options_of(const Robot& robot, const CalibrationChoice& choice) {
+  CalibrationOptions options;
+  options.cost = choice.cost.value_or(CostKind::EverySample);
+  options.rule = choice.rule.value_or(robot.rule);
+  options.position_weight = choice.position_weight;
+  options.heading_weight = choice.heading_weight;
+  options.distance = choice.distance;
+  options.mount = choice.mount;
+  options.from_origin = robot.kinematics == "4wis4wid";
+  return options;
+}
+
+// "[segments,arc]": what a problem's name has to say, so that J of different kinds never meet in a table.
+std::string variant_of(const CalibrationProblem& problem, const Robot& robot) {
+  if (problem.structured()) return "";
+  std::string text = problem.options().text();
+  if (robot.table.rule == TwistRule::LeastSquares && robot.kinematics == "4wis4wid")
+    text += ", least_squares";
+  std::erase(text, ' ');
+  return "[" + text + "]";
 }
 
 }  // namespace
 
-LoadedProblem load_calibration(const std::string& data, InstructionSet kernel) {
+LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
+                               const CalibrationChoice& choice) {
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
   Dataset dataset = load_dataset(path);
-  if (dataset.robot.kinematics != "4wis4wid")
-    throw DataError(fmt::format("{}: robot.kinematics is '{}'; the calibration problem knows 4wis4wid",
-                                path.string(), dataset.robot.kinematics));
-  require_range(path.string(), dataset.recordings);
+  require_range(path.string(), dataset.recordings, fits_schema_1(dataset.robot) ? 1 : 2);
+  if (choice.twist) dataset.robot.table.rule = *choice.twist;
+  std::vector<std::string> remarks;
   std::shared_ptr<const CalibrationProblem> model;
   try {
-    model = std::make_shared<const CalibrationProblem>(robot_parameters(dataset.robot),
-                                                       std::move(dataset.recordings), kernel);
+    if (dataset.robot.table.rule == TwistRule::Mean) remark_on_mean(dataset.robot, remarks);
+    model = std::make_shared<const CalibrationProblem>(dataset.robot, std::move(dataset.recordings),
+                                                       options_of(dataset.robot, choice), kernel);
   } catch (const std::invalid_argument& error) {  // what is wrong with the set is no usage error
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }
   dataset.recordings.clear();
-  return {Problem(model), model, std::move(dataset), path.string(), sha256_of_file(path), ""};
+  const std::string variant = variant_of(*model, dataset.robot);
+  return {Problem(model),       model,   std::move(dataset), path.string(),
+          sha256_of_file(path), variant, std::move(remarks)};
+}
+
+void require_4wis4wid(const LoadedProblem& loaded, const char* what) {
+  if (loaded.dataset->robot.kinematics != "4wis4wid" || !loaded.calibration->structured())
+    throw DataError(
+        fmt::format("{}: /robot/kinematics: found \"{}\", expected \"4wis4wid\", the robot that "
+                    "{} knows",
+                    loaded.dataset_path, shown(loaded.dataset->robot.kinematics), what));
 }
 
 std::string box_check_sum(const std::vector<ParameterInfo>& parameters) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "datasets/native/columns.hpp"
 #include "reports/statistics/row_groups.hpp"
 
 namespace odobench {
@@ -20,7 +21,8 @@ TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loade
   for (const Recording& r : loaded.calibration->recordings()) {
     set.recordings.push_back({r.id, r.trajectory, r.repetition, set.time_s.size(), r.size()});
     for (const std::int64_t time : r.time_us) set.time_s.push_back(static_cast<double>(time) * 1e-6);
-    append_track({r.reference.x, r.reference.y, r.reference.theta}, set.reference);
+    const Reference reference = with_reference_everywhere(r).reference;
+    append_track({reference.x, reference.y, reference.theta}, set.reference);
   }
   return set;
 }

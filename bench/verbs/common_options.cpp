@@ -27,6 +27,33 @@ void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std:
       [&kernel](const std::string& text) { kernel = instruction_set("--kernel", text); });
 }
 
+void add_calibration(CLI::App& app, CalibrationChoice& choice) {
+  add_value(
+      app, "--cost", "NAME",
+      "what is compared with the reference: every_sample, final_pose, segments or optiodom [every_sample]",
+      [&choice](const std::string& text) { choice.cost = cost_kind(text); });
+  add_value(app, "--integration", "RULE",
+            "from motions to poses: euler, midpoint, arc or optiodom-omni [that of the robot's class]",
+            [&choice](const std::string& text) { choice.rule = robots::integration_rule(text); });
+  add_value(app, "--twist", "RULE", "of steered wheels: least_squares or mean [as the set has it]",
+            [&choice](const std::string& text) { choice.twist = twist_rule(text); });
+  add_value(app, "--weights", "P,H", "of squared position (m) and heading (rad) errors [1,1]",
+            [&choice](const std::string& text) {
+              const std::size_t comma = text.find(',');
+              if (comma == std::string::npos)
+                throw std::invalid_argument(
+                    fmt::format("--weights={}: expected two numbers above 0, position,heading", text));
+              choice.position_weight = finite_number("--weights", text.substr(0, comma), true);
+              choice.heading_weight = finite_number("--weights", text.substr(comma + 1), true);
+            });
+  add_value(
+      app, "--distance", "M", "between the sample rows of segments and optiodom, in m [0.5]",
+      [&choice](const std::string& text) { choice.distance = finite_number("--distance", text, true); });
+  app.add_flag(
+      "--mount", choice.mount,
+      "the tracked frame's place and yaw on the robot are unknowns, too; judge them on other drives");
+}
+
 void add_budget(CLI::App& app, Budget& budget) {
   add_value(app, "--max-evals", "N",
             fmt::format("evaluations (costs and derivatives) of a run at most; 'none' lifts the limit [{}]",

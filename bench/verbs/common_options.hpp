@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "bench/catalogue/problem_factory.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/run.hpp"
 
@@ -22,6 +23,8 @@ inline constexpr const char* kNamedOnly = "no result of this verb depends on it"
 
 // --kernel. `remark`: what the verb's results have to do with it.
 void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark);
+// --cost, --integration, --twist, --weights, --distance, --mount of a calibration.
+void add_calibration(CLI::App& app, CalibrationChoice& choice);
 // --max-evals, --time-limit, --target.
 void add_budget(CLI::App& app, Budget& budget);
 

@@ -9,7 +9,9 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
+#include "datasets/robots/layouts.hpp"
 #include "problems/simulation/demo_generator.hpp"
+#include "problems/simulation/robot_demo.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {
@@ -17,6 +19,7 @@ namespace {
 
 struct DemoOptions {
   std::string out;
+  std::string robot = "4wis4wid";     // class
   std::optional<std::uint64_t> seed;  // of the noise; none: that of the demo set in the repository
   bool overwrite = false;
   bool json = false;  // say on standard output what was written
@@ -24,6 +27,11 @@ struct DemoOptions {
 
 void add_options(CLI::App& app, DemoOptions& o) {
   app.add_option("--out", o.out, "folder for set.json")->required()->type_name("DIR");
+  app.add_option(
+         "--robot", o.robot,
+         "class of the robot, see 'bench list robots'; others than 4wis4wid get small sets of squares, "
+         "circles and lines [4wis4wid]")
+      ->type_name("CLASS");
   app.add_option_function<std::string>(
          "--seed", [&o](const std::string& text) { o.seed = seed_number("--seed", text); },
          "of its noise [that of the set in the repository]")
@@ -32,10 +40,19 @@ void add_options(CLI::App& app, DemoOptions& o) {
   add_json(app, o.json);
 }
 
+// Short names that people type.
+std::string robot_class(const std::string& typed) {
+  if (typed == "diff") return "differential";
+  return typed;
+}
+
 ExitCode demo_command(const DemoOptions& options) {
   const std::filesystem::path set = std::filesystem::path(options.out) / "set.json";
   require_writable(set, existing_files(options.overwrite));
-  save_announced(make_demo_dataset(options.seed.value_or(kDemoSeed)), set, options.overwrite, options.json);
+  const std::uint64_t seed = options.seed.value_or(kDemoSeed);
+  const std::string kinematics = robots::layout(robot_class(options.robot)).name;
+  save_announced(kinematics == "4wis4wid" ? make_demo_dataset(seed) : make_robot_demo(kinematics, seed), set,
+                 options.overwrite, options.json);
   return ExitCode::Success;
 }
 

@@ -24,16 +24,18 @@ struct EvaluateOptions {
 
 void add_options(CLI::App& app, EvaluateOptions& o) {
   app.add_option("--data", o.study.data, "data set [the demo set]")->type_name("SET.JSON");
-  app.add_option("--parameters", o.study.parameters,
-                 "JSON files ({\"a1\": 0.1125, ...} in metres, or an array of such), 'nominal', or names "
-                 "the set knows "
-                 "such as published:lm, truth; a comma list, may be given again [nominal]")
+  app.add_option(
+         "--parameters", o.study.parameters,
+         "JSON files ({\"a1\": 0.1125, ...} in metres and radians, or an array of such), 'nominal', or names "
+         "the set knows "
+         "such as published:lm, truth; a comma list, may be given again [nominal]")
       ->type_name("LIST")
       ->allow_extra_args(false);
   app.add_option(
          "--tracks", o.tracks,
          "write the paths that the parameters give as CSV, for plots; - for standard output, without tables")
       ->type_name("FILE.CSV");
+  add_calibration(app, o.study.calibration);
   add_kernel(app, o.study.kernel, kLastBits);
   app.add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
   app.add_flag("--overwrite", o.overwrite, "replace what --tracks or --out find there");

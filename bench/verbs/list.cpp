@@ -1,6 +1,7 @@
 #include "bench/verbs/list.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,19 +12,21 @@
 #include "bench/studies/scenario_tables.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "datasets/dataset.hpp"
+#include "datasets/robots/layouts.hpp"
+#include "problems/robots/wheeled_robot.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {
 namespace {
 
 struct ListOptions {
-  std::string what;  // solvers | problems | data | scenarios
+  std::string what;  // solvers | problems | robots | data | scenarios
   std::string data;  // with `data`, `scenarios`: the one to describe; empty: known places
   std::string format = "console";
 };
 
 void add_options(CLI::App& app, ListOptions& o) {
-  app.add_option("what", o.what, "solvers, problems, data or scenarios")->required();
+  app.add_option("what", o.what, "solvers, problems, robots, data or scenarios")->required();
   app.add_option("set", o.data, "with data or scenarios: the one to describe [known places]");
   add_format(app, o.format);
 }
@@ -96,6 +99,40 @@ std::vector<Table> problem_tables(const Catalogue& catalogue) {
     table->rows.push_back(problem_row(entry));
   }
   return tables;
+}
+
+// The classes, their parameters, and what no data can tell of them.
+std::vector<Table> robot_tables() {
+  Table classes{"robots",
+                "Classes of robots, as in \"kinematics\" of a set.json and in bench demo --robot=CLASS",
+                {text_column("class"), text_column("description"), number_column("parameters"),
+                 text_column("signals"), text_column("integration"), text_column("twist")},
+                {},
+                {"Any other robot is a table of wheels of its own: docs/robots.md."}};
+  Table parameters{"robots.parameters",
+                   "Their parameters",
+                   {text_column("class"), text_column("parameter"), text_column("unit"),
+                    number_column("nominal"), number_column("lower"), number_column("upper")},
+                   {},
+                   {}};
+  Table blind{
+      "robots.blind", "What data cannot tell", {text_column("class"), text_column("combination")}, {}, {}};
+  for (const robots::Layout& layout : robots::layouts()) {
+    const robots::WheeledRobot robot(robots::make_robot(layout));
+    classes.rows.push_back(
+        {text_cell(layout.name), text_cell(layout.description),
+         count_cell(static_cast<double>(robot.parameters().size())),
+         text_cell(fmt::format("{}", fmt::join(robot.signals(), ", "))),
+         text_cell(std::string(robots::name_of(layout.rule))),
+         text_cell(std::string(kTwistRuleNames[static_cast<std::size_t>(robot.table().rule)]))});
+    for (const RobotParameter& p : robot.parameters())
+      parameters.rows.push_back({text_cell(layout.name), text_cell(p.name), text_cell(p.unit),
+                                 significant_cell(p.nominal, 5), significant_cell(p.lower, 5),
+                                 significant_cell(p.upper, 5)});
+    for (const std::string& text : layout.blind)
+      blind.rows.push_back({text_cell(layout.name), text_cell(text)});
+  }
+  return {classes, parameters, blind};
 }
 
 std::vector<Table> known_data_tables() {
@@ -197,7 +234,7 @@ std::vector<Table> set_tables(const std::string& path) {
 
 ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
-  const std::vector<std::string> known = {"solvers", "problems", "data", "scenarios"};
+  const std::vector<std::string> known = {"solvers", "problems", "robots", "data", "scenarios"};
   if (!options.data.empty() && options.what != "data" && options.what != "scenarios")
     throw std::invalid_argument(
         fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
@@ -207,11 +244,13 @@ ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
     print_tables(problem_tables(catalogue), format);
   } else if (options.what == "data") {
     print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
+  } else if (options.what == "robots") {
+    print_tables(robot_tables(), format);
   } else if (options.what == "scenarios") {
     print_tables(scenario_tables(options.data), format);
   } else {
     throw std::invalid_argument(
-        fmt::format("bench list '{}'{}: expected solvers, problems, data or scenarios", options.what,
+        fmt::format("bench list '{}'{}: expected solvers, problems, robots, data or scenarios", options.what,
                     did_you_mean(options.what, known)));
   }
   return ExitCode::Success;

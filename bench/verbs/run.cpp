@@ -48,6 +48,7 @@ void add_options(CLI::App& app, RunOptions& options) {
          "problems and patterns of names, e.g. rosenbrock,nist:*,mgh:*/10; may be given again [calibration]")
       ->type_name("LIST")
       ->allow_extra_args(false);
+  add_calibration(app, options.study.calibration);
   add_value(app, "--dimension", "N", "dimension of classic problems", [&options](const std::string& text) {
     options.study.dimension = static_cast<int>(whole_number("--dimension", text, 1, 1000));
   });

@@ -141,11 +141,7 @@ Robot read_class(const JsonNode& node, const std::string& kinematics) {
 
 void read_rules(const JsonNode& node, Robot& robot) {
   if (node.has("twist")) {
-    const std::string twist = node.at("twist").text();
-    const auto found = std::find(kTwistRuleNames.begin(), kTwistRuleNames.end(), twist);
-    if (found == kTwistRuleNames.end())
-      node.at("twist").fail('"' + shown(twist) + '"', "\"least_squares\" or \"mean\"");
-    robot.table.rule = static_cast<TwistRule>(found - kTwistRuleNames.begin());
+    robot.table.rule = twist_rule(node.at("twist").text());
   }
   if (node.has("integration")) robot.rule = robots::integration_rule(node.at("integration").text());
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/names.hpp"
+#include "base/text.hpp"
 #include "datasets/robots/layouts.hpp"
 
 namespace odobench {
@@ -42,6 +43,13 @@ void tie(const std::pair<std::string, std::string>& names, const std::string& ki
 }
 
 }  // namespace
+
+TwistRule twist_rule(std::string_view name) {
+  if (name == "mean") return TwistRule::Mean;
+  if (name == "least_squares" || name == "least-squares") return TwistRule::LeastSquares;
+  throw std::invalid_argument(
+      fmt::format("unknown twist rule '{}'; expected least_squares or mean", shown(name)));
+}
 
 void set_default_box(RobotParameter& p) {
   const double box =

@@ -87,6 +87,8 @@ enum class TwistRule {
   Mean  // 1/N sum (radius w e, radius w (p x e) / |p|^2), equal to least squares for symmetric layouts
 };
 inline constexpr std::array<std::string_view, 2> kTwistRuleNames = {"least_squares", "mean"};
+// Throws std::invalid_argument for an unknown name. "least-squares" is taken, too.
+TwistRule twist_rule(std::string_view name);
 
 struct WheelTable {
   std::vector<Wheel> wheels;

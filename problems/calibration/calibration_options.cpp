@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/names.hpp"
+#include "base/text.hpp"
 
 namespace odobench {
 namespace {
@@ -24,8 +25,8 @@ CostKind cost_kind(std::string_view name) {
   const auto found = std::find(kCostNames.begin(), kCostNames.end(), name);
   if (found == kCostNames.end())
     throw std::invalid_argument(
-        fmt::format("unknown cost '{}'{}; expected every_sample, final_pose, segments or optiodom", name,
-                    did_you_mean(std::string(name), {kCostNames.begin(), kCostNames.end()})));
+        fmt::format("unknown cost '{}'{}; expected every_sample, final_pose, segments or optiodom",
+                    shown(name), did_you_mean(std::string(name), {kCostNames.begin(), kCostNames.end()})));
   return static_cast<CostKind>(found - kCostNames.begin());
 }
 

@@ -54,7 +54,7 @@ void PrintTo(const Violation& violation, std::ostream* out) {
 
 const std::vector<Violation> kViolations = {
     {"DatasetsIncludeProblems", "datasets/reader.hpp", "#pragma once\n#include \"problems/problem.hpp\"\n",
-     "datasets/reader.hpp:2: includes \"problems/problem.hpp\": datasets includes nothing of ours but base"},
+     "datasets/reader.hpp:2: includes \"problems/problem.hpp\": datasets includes only base"},
     {"ReportsIncludeSolvers", "reports/render/table.hpp", "#pragma once\n#include \"solvers/solver.hpp\"\n",
      "reports/render/table.hpp:2: includes \"solvers/solver.hpp\": reports/render includes nothing of ours "
      "but "

@@ -26,7 +26,8 @@ void require_finite(const RunRecord& record) {
 
 Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, const Stop& stop) {
   const InstructionSet kernel = kernel_in_force(study.kernel);
-  Evaluation evaluation{load_calibration(study.data, kernel), {}, {}};
+  Evaluation evaluation{load_calibration(study.data, kernel, study.calibration), {}, {}};
+  for (const std::string& remark : evaluation.loaded.remarks) watcher.warn(remark);
   evaluation.sets = read_parameter_list(evaluation.loaded, study.parameters, watcher);
   const RunContext context = run_context(1, kernel);
   for (const ParameterSet& set : evaluation.sets) {

@@ -14,7 +14,8 @@
 namespace odobench {
 
 struct EvaluationStudy {
-  std::string data;                     // path of set.json; empty: the demo set
+  std::string data;  // path of set.json; empty: the demo set
+  CalibrationChoice calibration;
   std::vector<std::string> parameters;  // files or names, as of read_parameter_list()
   std::optional<InstructionSet> kernel;
 };

@@ -40,8 +40,10 @@ std::vector<LoadedProblem> load_problems(const SolverStudy& study, const Catalog
     throw std::invalid_argument(fmt::format("--data: the problem '{}' takes no data set", names.front()));
   std::vector<LoadedProblem> loaded;
   for (const std::string& name : names)
-    loaded.push_back(
-        catalogue.problem(name).make({study.dimension, takes_data(name) ? study.data : "", kernel}));
+    loaded.push_back(catalogue.problem(name).make(
+        {study.dimension, takes_data(name) ? study.data : "", study.calibration, kernel}));
+  for (const LoadedProblem& one : loaded)
+    for (const std::string& remark : one.remarks) notes.push_back(remark);
   return loaded;
 }
 

@@ -22,6 +22,7 @@ struct SolverStudy {
   std::vector<std::string> problems;  // each a comma list of names and patterns; empty: calibration
   int dimension = 0;                  // of classic problems; 0: their usual ones
   std::string data;                   // path of set.json of the calibration; empty: the demo set
+  CalibrationChoice calibration;
   int repeat = 1;
   std::uint64_t seed = 1;
   bool random_start = false;

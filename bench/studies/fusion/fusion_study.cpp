@@ -48,6 +48,7 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
   const SensorsFile sensors = read_sensors(study.sensors);
   const InstructionSet kernel = kernel_in_force(study.kernel);
   const LoadedProblem loaded = load_calibration(study.data, kernel);
+  require_4wis4wid(loaded, "sensor fusion");
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, study.parameters, watcher);
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
   const std::uint64_t seed = study.seed.value_or(sensors.seed);

@@ -160,6 +160,7 @@ Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher
   SensorsFile sensors = read_sensors(study.sensors);
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(study.data, kernel_in_force(study.kernel));
+  require_4wis4wid(loaded, "tuning of filters");
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, {study.parameters}, watcher);
   if (sets.size() != 1)
     throw std::invalid_argument(
