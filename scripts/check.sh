@@ -35,6 +35,7 @@ datasets/entropy              datasets/csv
 datasets/native               datasets datasets/robots
 datasets/robots
 datasets/import               datasets datasets/csv
+datasets/import/optiodom      datasets datasets/csv datasets/robots
 reports/records
 reports/statistics            reports/records
 reports/render
@@ -45,6 +46,7 @@ reports/kinds/fusion          reports/records reports/statistics reports/render 
 reports/page                  reports/
 problems
 problems/calibration          problems problems/robots datasets datasets/robots
+problems/calibration/classical  problems problems/robots datasets datasets/robots
 problems/classic              problems
 problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems

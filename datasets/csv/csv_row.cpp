@@ -1,6 +1,7 @@
 #include "datasets/csv/csv_row.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -102,6 +103,11 @@ bool CsvRow::names_from_comment(const std::string& comment, std::string_view lin
   return true;
 }
 
+void CsvRow::take_names(std::vector<std::string> names) {
+  names_ = std::move(names);
+  header_line_ = 0;
+}
+
 bool CsvRow::take_waiting_row() {
   if (!has_waiting_) return false;
   has_waiting_ = false;
@@ -122,6 +128,9 @@ void CsvRow::check_fields() {
   if (fields_.size() == names_.size() && !(unfinished_ && fields_.back().empty())) return;
   if (unfinished_)  // a number cut in two would pass for another number
     fail("found the end of the file inside the line, expected a line break");
+  if (header_line_ == 0)
+    fail(fmt::format("found {} fields, expected {}: {}", fields_.size(), names_.size(),
+                     fmt::join(names_, ", ")));
   const bool commas = dialect_.separator == ',' && fields_.size() > names_.size();
   fail(fmt::format("found {} fields, expected {} as in the header{}", fields_.size(), names_.size(),
                    commas ? "; numbers with decimal commas need another separator, such as ';'" : ""));

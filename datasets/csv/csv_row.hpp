@@ -47,6 +47,8 @@ class CsvRow {
   // Passes over a byte order mark, "sep=", comments and blank lines, and takes the header; false where there
   // is none.
   bool take_header();
+  // Names for the columns of a text that has no header line.
+  void take_names(std::vector<std::string> names);
   // Takes the row of this line; false where it is a comment. DataError when its number of fields differs from
   // the header's.
   bool take_row(std::string_view line);
@@ -66,7 +68,7 @@ class CsvRow {
   std::string file_;
   CsvDialect dialect_;
   mutable Decimal decimal_ = Decimal::Unknown;  // what the numbers so far were written with
-  std::size_t header_line_ = 1;
+  std::size_t header_line_ = 1;                 // 0: there is none
   std::vector<std::string> names_;
   std::vector<std::string_view> fields_;
   std::deque<std::string> unescaped_;

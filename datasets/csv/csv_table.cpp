@@ -11,6 +11,12 @@ CsvTable::CsvTable(std::string_view text, const std::string& file, char separato
   fail("found an empty file, expected a header line");
 }
 
+CsvTable::CsvTable(std::string_view text, const std::string& file, char separator,
+                   std::vector<std::string> names)
+    : CsvRow(file, separator), rest_(text) {
+  take_names(std::move(names));
+}
+
 std::size_t CsvTable::rows_left_at_most() const {
   const std::size_t end = rest_.find('\n');
   return end == std::string_view::npos

@@ -1,4 +1,4 @@
-// Rows of a separated text with one header line, the whole text in memory.
+// Rows of a separated text with one header line or none, the whole text in memory.
 #pragma once
 
 #include "datasets/csv/csv_row.hpp"
@@ -12,6 +12,9 @@ class CsvTable : public CsvRow {
  public:
   // Reads the header line; no text at all is a DataError. `file` is the name in messages.
   CsvTable(std::string_view text, const std::string& file, char separator);
+
+  // A text without a header line, whose columns are these: its first line is a row.
+  CsvTable(std::string_view text, const std::string& file, char separator, std::vector<std::string> names);
 
   // To the next row; false at the end. Throws DataError when its number of fields differs from the header's,
   // and when the last line has neither a line break nor
