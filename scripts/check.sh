@@ -46,7 +46,7 @@ reports/kinds/fusion          reports/records reports/statistics reports/render 
 reports/page                  reports/
 problems
 problems/calibration          problems problems/robots datasets datasets/robots
-problems/calibration/classical  problems problems/robots datasets datasets/robots
+problems/calibration/classical  problems problems/calibration problems/robots datasets datasets/robots
 problems/classic              problems
 problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems
