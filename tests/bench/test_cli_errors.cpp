@@ -64,6 +64,13 @@ TEST(CliErrors, Verbs) {
   expect_refusal({"list", "solvers", "set.json"}, kUsage, {"'set.json' is not expected here"});
   expect_refusal({"import", "vitko2023", "--from=x", "--out=y"}, kUsage, {"did you mean 'vitko2024'?"});
   expect_refusal({"import", "vitko2024", "--out=y"}, kUsage, {"--from"});
+  expect_refusal({"import", "optiodom", "--from=x", "--out=y", "--exclude=2,x"}, kUsage,
+                 {"--exclude: found 'x', expected numbers of runs, from 1"});
+  expect_refusal({"import", "optiodom", "--from=x", "--out=y", "--exclude=0"}, kUsage, {"found '0'"});
+  expect_refusal({"import", "optiodom", "--from=x", "--out=y", "--drop-lost"}, kUsage, {"of vitko2024 only"});
+  expect_refusal({"import", "vitko2024", "--from=x", "--out=y", "--exclude=2"}, kUsage, {"of optiodom only"});
+  expect_refusal({"import", "optiodom", "--from=absent,absent", "--out=y"}, kData,
+                 {"absent: found no folder that can be read"});
   expect_refusal({"check", "x"}, kUsage, {"--baseline"});
   expect_refusal({"report"}, kUsage, {"runs"});
 }

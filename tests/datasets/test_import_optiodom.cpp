@@ -136,6 +136,7 @@ TEST(ImportOptiodom, SeveralFoldersAndExcludedRuns) {
   EXPECT_THAT(usage_error({first, first}), ::testing::HasSubstr("given twice"));
   EXPECT_THAT(usage_error({first}, {{3}}), ::testing::HasSubstr("run 3 is to be excluded, but no folder"));
   EXPECT_THAT(usage_error({first}, {{1, 2}}), ::testing::HasSubstr("all runs are excluded"));
+  EXPECT_THAT(usage_error({first, ""}), ::testing::HasSubstr("found an empty name"));
   EXPECT_THAT(usage_error({}), ::testing::HasSubstr("no folder"));
 }
 
@@ -274,6 +275,37 @@ TEST(ImportOptiodom, RealFolders) {
       }
     }
   }
+}
+
+// What a set.json keeps of it.
+TEST(ImportOptiodom, SurvivesItsSet) {
+  const DriveFolders raw;
+  raw.write("_metadata.csv", "type,omni4\nngear,1\nencRes,1\nLi,0.2,0.3\nDi,0.06,0.06,0.07,0.06\nN,2\n");
+  const std::string rows =
+      "0,0,0,0,-0,-0,-0,-0\n0.01,0.1,0.2,0.1,0.25,0.5,-0.125,1\n0.02,0.3,0.2,0.1,1,2,3,4\n";
+  raw.write("_run-01.csv", rows);
+  raw.write("_run-02.csv", rows);
+  EXPECT_THAT(data_error([&] { import_optiodom({raw.path()}); }),
+              ::testing::HasSubstr("found 3 fields, expected 2"));
+  raw.write("_metadata.csv",
+            "type,omni4,,,\nngear,1,,,\nencRes,1,,,\nLi,0.2,0.3,,\nDi,0.06,0.06,0.07,0.06\nN,2,,,\n");
+  const Dataset d = import_optiodom({raw.path()});
+  EXPECT_EQ(d.recordings[0].signals[1].values[1], -kPi) << "the right wheels count backwards";
+  save_dataset(d, raw.root() / "set.json");
+  const Dataset again = load_dataset(raw.root() / "set.json");
+  EXPECT_EQ(again.recordings.size(), 2u);
+  EXPECT_EQ(again.recordings[1].signals, d.recordings[1].signals);
+  EXPECT_EQ(again.recordings[1].reference, d.recordings[1].reference);
+  EXPECT_EQ(again.recordings[1].time_us, (std::vector<std::int64_t>{0, 10'000, 20'000}));
+  ASSERT_EQ(again.robot.parameters.size(), 7u);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(again.robot.parameters[i].name, d.robot.parameters[i].name);
+    EXPECT_EQ(again.robot.parameters[i].nominal, d.robot.parameters[i].nominal);
+    EXPECT_EQ(again.robot.parameters[i].lower, d.robot.parameters[i].lower);
+  }
+  EXPECT_EQ(again.robot.parameters[1].nominal, 0.15);
+  EXPECT_EQ(again.robot.parameters[2].lower, again.robot.parameters[2].upper) << "the rollers' angle is held";
+  EXPECT_EQ(again.notes, d.notes);
 }
 
 }  // namespace

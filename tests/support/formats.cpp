@@ -112,6 +112,21 @@ std::vector<Words> read_raw(const std::string& capture, const std::string& wheel
            "--overwrite", "--quiet"}};
 }
 
+const std::string kOptiodomMetadata =
+    "type,diff,,\nngear,43.7,,\nencRes,64,,\nLi,0.2,,\nDi,0.084,0.084,\nThi,,,\nN,1,,\nL,0.75,,\nimarkers,2,"
+    "5,\n";
+const std::string kOptiodomRun =
+    "0,0,0,0,-0,12\n0.05,-1.5e-05,0.25,-0.000299,0,0\n0.100000000000001,0.002,0.5,0.001,127,-48\n";
+
+std::vector<Words> read_optiodom(const std::string& metadata, const std::string& run,
+                                 const TemporaryFolder& folder) {
+  fs::create_directories(folder / "diff/square/0102");
+  folder.file("diff/square/0102/0102_metadata.csv", metadata);
+  folder.file("diff/square/0102/0102_run-01.csv", run);
+  return {{"import", "optiodom", "--from=" + (folder / "diff/square/0102").string(),
+           "--out=" + out(folder, "set.json"), "--overwrite", "--quiet"}};
+}
+
 // A run directory whose file `name` has these bytes.
 std::string run_directory(const std::string& name, const std::string& bytes, const TemporaryFolder& folder) {
   if (!fs::exists(folder / "run")) fs::copy(prepared() / "run", folder / "run", fs::copy_options::recursive);
@@ -170,6 +185,10 @@ std::vector<Format> make_formats() {
        [](Bytes b, Files f) -> Commands { return read_raw(b, raw_file("odom_1.csv"), f); }},
       {"wheels", [] { return std::vector<std::string>{raw_file("odom_1.csv")}; },
        [](Bytes b, Files f) -> Commands { return read_raw(raw_file("abs_1.csv"), b, f); }},
+      {"optiodom_metadata", [] { return std::vector<std::string>{kOptiodomMetadata}; },
+       [](Bytes b, Files f) -> Commands { return read_optiodom(b, kOptiodomRun, f); }},
+      {"optiodom_run", [] { return std::vector<std::string>{kOptiodomRun}; },
+       [](Bytes b, Files f) -> Commands { return read_optiodom(kOptiodomMetadata, b, f); }},
       {"filter", [] { return std::vector<std::string>{CircleRun().data()}; },
        [](Bytes b, Files f) -> Commands { return read_filter(b, "", f); }},
       {"truth", [] { return std::vector<std::string>{CircleRun().truth()}; },

@@ -65,6 +65,7 @@ int run_number(const std::string& name, const std::string& stamp) {
 }
 
 DriveFolder open_folder(const fs::path& given, Provenance& provenance) {
+  if (given.empty()) throw std::invalid_argument("found an empty name, expected a folder of OptiOdom's data");
   DriveFolder f;
   f.folder = fs::absolute(given).lexically_normal();
   if (f.folder.filename().empty()) f.folder = f.folder.parent_path();

@@ -28,9 +28,10 @@ struct OptiodomOptions {
 //     follows. A run's number is its repetition, "STAMP_run-NN" its id.
 //   - Notes count what was left out, and say where metadata of folders differ or state another number of
 //     runs.
-// Throws std::invalid_argument for no folder, one that is given twice, an excluded number that no folder has,
-// and where nothing is left; DataError "file:line: ..." or "file: ..." for a folder without exactly one
-// metadata file or without runs, other types, and everything parse_metadata() and parse_run() refuse.
+// Throws std::invalid_argument for no folder, an empty name, one that is given twice, an excluded number that
+// no folder has, and where nothing is left; DataError "file:line: ..." or "file: ..." for a folder without
+// exactly one metadata file or without runs, other types, and everything parse_metadata() and parse_run()
+// refuse.
 Dataset import_optiodom(const std::vector<std::filesystem::path>& folders,
                         const OptiodomOptions& options = {});
 

@@ -17,6 +17,9 @@ namespace {
 
 constexpr char kSeparator = ',';
 constexpr double kMostRuns = 1000;
+constexpr double kMostMotion = 1e12;  // counts, turns or rad between two rows
+// Of a turn of the wheel: 1 where a column holds turns.
+constexpr double kLeastCounts = 1e-3, kMostCounts = 1e12;
 
 // "name", "value 1", "value 2", ...: as many as the first line has.
 std::vector<std::string> metadata_columns(std::string_view text) {
@@ -58,6 +61,11 @@ class MetadataRows {
         throw DataError(fmt::format("{}:{}: found no row \"{}\" up to the end, expected one", table_.file(),
                                     table_.line() + 1, name));
     m.counts_per_turn = gear * encoder;
+    if (m.counts_per_turn < kLeastCounts || m.counts_per_turn > kMostCounts)
+      throw DataError(
+          fmt::format("{}:{}: found {:g} counts of the encoder (ngear times encRes) in a turn of the wheel, "
+                      "expected from {:g} to {:g}",
+                      table_.file(), table_.line() + 1, m.counts_per_turn, kLeastCounts, kMostCounts));
     return m;
   }
 
@@ -210,6 +218,9 @@ Run parse_run(std::string_view text, const std::string& file, const Metadata& me
     for (std::size_t i = 0; i < type.sensors.size(); ++i) {
       const SensorColumn& s = type.sensors[i];
       const double value = table.number(4 + i);
+      if (std::abs(value) > kMostMotion)
+        table.fail(fmt::format("found {:g} in column \"{}\", expected a motion of at most {:g} in size",
+                               value, s.column, kMostMotion));
       const double scale = s.kind == SignalKind::Increment ? 2 * kPi / metadata.counts_per_turn : 1;
       r.signals[i].values.push_back(s.sign * scale * value + 0.0);  // no -0
       if (row == 0 && s.kind == SignalKind::Increment)

@@ -48,7 +48,8 @@ struct Metadata {
 };
 
 // Rows type, ngear, encRes, Li, Di, N are needed, each once; Thi and L may be empty; others (marker numbers,
-// cuts of the raw files) are passed over. Numbers of distances and diameters are those of the type, all > 0.
+// cuts of the raw files) are passed over. Numbers of distances and diameters are those of the type, all > 0;
+// counts of a turn from 1e-3 to 1e12.
 Metadata parse_metadata(std::string_view text, const std::string& file);
 
 // The robot with these nominal values and the boxes by default. A mecanum robot's roller angle is held at 45
