@@ -95,6 +95,25 @@ TEST(OptiodomReference, SampleRowsAndFiles) {
   }
 }
 
+TEST(OptiodomReference, OrderOfRunsAndFirstIncrementsDoNotMatter) {
+  ODOBENCH_NEEDS_OPTIODOM();
+  const Dataset& data = optiodom_set("omni3/square/221220201934");
+  for (const std::string cost : {"optiodom", "segments"}) {
+    const CalibrationOptions options = options_of("omni3", cost);
+    const CalibrationProblem problem(data.robot, data.recordings, options);
+    const Vector z = problem.general()->robot().nominal() * 1.01;
+    std::vector<Recording> changed(data.recordings.rbegin(), data.recordings.rend());
+    EXPECT_NEAR(CalibrationProblem(data.robot, changed, options).cost(z), problem.cost(z),
+                1e-13 * problem.cost(z));
+    changed = data.recordings;
+    for (Recording& r : changed)
+      for (Signal& signal : r.signals) signal.values[0] = 1e9;
+    EXPECT_EQ(CalibrationProblem(data.robot, changed, options).cost(z), problem.cost(z));
+    changed[0].signals[0].values[1] += 0.01;
+    EXPECT_NE(CalibrationProblem(data.robot, changed, options).cost(z), problem.cost(z));
+  }
+}
+
 // The reference's box: 20 % of lengths, 0.2 rad.
 Robot in_wide_box(Robot robot) {
   for (RobotParameter& p : robot.parameters) {
