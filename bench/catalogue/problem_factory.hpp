@@ -18,7 +18,7 @@ struct LoadedProblem {
   std::string dataset_sha256;
   std::string variant;  // "[n=12]" when a classic problem has another dimension than its usual one,
                         // "[segments,arc]" where a calibration is not as in the thesis
-  std::vector<std::string> remarks;  // what whoever calibrates this robot should know, a sentence each
+  std::vector<std::string> remarks = {};  // what whoever calibrates this robot should know, a sentence each
 
   // In records, and what seeds are derived from: problems of different dimensions are different problems.
   std::string name() const { return problem.name() + variant; }

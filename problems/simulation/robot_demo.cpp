@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/angle.hpp"
@@ -23,7 +25,9 @@ constexpr double kSpeed = 0.25;          // m/s
 constexpr double kTurn = 0.5;            // rad/s, on the spot
 constexpr double kRamp = 0.4;            // s, to full speed and back
 constexpr double kSide = 1.5;            // m
-constexpr double kSteeringLimit = 0.6;   // rad, of robots that steer like cars
+constexpr double kDriveWander = 0.03;    // of the speed
+constexpr double kSteeringWander = 2 * kDegree;
+constexpr double kSteeringLimit = 0.6;  // rad, of robots that steer like cars
 
 // Constant commands for a while; speeds ramp up and down at their ends.
 struct Phase {
@@ -130,6 +134,28 @@ double to_pose_grid(double value) {
   return std::round(value * 1e7) / 1e7;
 }
 
+// Servos follow their commands loosely, each in its own rhythm: without that the wheels of a robot that
+// drives without slip tell no more than its twist, which is three numbers.
+class Wander {
+ public:
+  explicit Wander(Random& noise) {
+    for (Part& part : parts_)
+      part = {noise.uniform(0.3, 0.6), noise.uniform(2, 15), noise.uniform(0, 2 * kPi)};
+  }
+  // In [-1.2, 1.2].
+  double at(double t) const {
+    double sum = 0;
+    for (const Part& part : parts_) sum += part.size * std::sin(2 * kPi * t / part.period + part.phase);
+    return sum;
+  }
+
+ private:
+  struct Part {
+    double size, period, phase;
+  };
+  std::array<Part, 2> parts_;
+};
+
 class RobotDemo {
  public:
   explicit RobotDemo(const Robot& robot) : robot_(robot), model_(robot.table) {}
@@ -154,14 +180,20 @@ class RobotDemo {
     const Eigen::Index intervals = twists.cols();
     Matrix motion(3, intervals), poses(3, intervals + 1);
     Matrix signals(static_cast<Eigen::Index>(model_.signals().size()), intervals);
+    std::vector<Wander> wander;
+    for (Eigen::Index i = 0; i < signals.rows(); ++i) wander.emplace_back(noise);
     Vector held = Vector::Zero(signals.rows());
     for (Eigen::Index k = 0; k < intervals; ++k) {
       held = model_.inverse(twists.col(k), z, held);
-      signals.col(k) = held;
-      signals.col(k).head(model_.drive_count()) *= kStep;
+      const double t = kStep * (static_cast<double>(k) + 0.5);
+      for (Eigen::Index i = 0; i < signals.rows(); ++i) {
+        const double w = wander[static_cast<std::size_t>(i)].at(t);
+        signals(i, k) = i < model_.drive_count() ? kStep * held[i] * (1 + kDriveWander * w)
+                                                 : held[i] + kSteeringWander * w;
+      }
     }
     model_.twists(signals, z, motion);
-    robots::integrate(robots::IntegrationRule::Arc, motion, Eigen::Vector3d::Zero(), poses);
+    robots::integrate(robot_.rule, motion, Eigen::Vector3d::Zero(), poses);
     Recording r;
     for (Eigen::Index k = 0; k <= intervals; ++k) {
       r.time_us.push_back(kStep_us * k);
