@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bench/studies/calibration/wall_remark.hpp"
 #include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/records.hpp"
@@ -60,6 +61,24 @@ CellList plan_all(CellPlan plan, const Catalogue& catalogue, const std::vector<L
   return cells;
 }
 
+// Notes on the lowest run of each calibration. Returns whether there are any.
+bool add_wall_remarks(const std::vector<LoadedProblem>& loaded, std::vector<RunRecord>& records) {
+  bool any = false;
+  for (const LoadedProblem& one : loaded) {
+    RunRecord* lowest = nullptr;
+    for (RunRecord& r : records)
+      if (r.kind == "run" && r.cost && r.problem == one.name() && r.dataset == one.dataset_name() &&
+          (lowest == nullptr || *r.cost < *lowest->cost))
+        lowest = &r;
+    if (lowest == nullptr) continue;
+    const std::string remark = wall_remark(one, *lowest);
+    if (remark.empty()) continue;
+    lowest->notes.push_back(remark);
+    any = true;
+  }
+  return any;
+}
+
 // The records of all cells that ran, behind those that are there.
 void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded, const CellList& cells,
              const RunContext& context, RunFolder& folder, Watcher& watcher, const Stop& stop,
@@ -81,8 +100,9 @@ void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded,
   recorder.move_to(runs.records);
   for (const LoadedProblem& one : loaded)
     if (one.calibration && folder.keeps()) folder.save(run_tracks(one, runs.records));
+  const bool remarked = !runs.interrupted && add_wall_remarks(loaded, runs.records);
   // Cells end in an order that depends on the threads; the finished file does not.
-  if (!recorder.in_order()) folder.replace(runs.records);
+  if (remarked || !recorder.in_order()) folder.replace(runs.records);
 }
 
 }  // namespace
