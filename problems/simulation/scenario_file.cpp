@@ -31,9 +31,48 @@ PerWheel per_wheel(const JsonNode& node, double unit) {
   return wheels;
 }
 
+// The geometry that the robot's makers state, and how far the true one may be from it.
+void read_nominal(const JsonNode& node, Robot& robot) {
+  double box = 0.05;
+  if (node.has("box")) {
+    box = node.at("box").number();
+    if (!(box > 0) || !(box < 1)) node.at("box").fail(fmt::format("{}", box), "a share above 0 and below 1");
+  }
+  const Parameters nominal =
+      node.has("nominal") ? read_parameters(node.at("nominal"), robot) : nominal_parameters(robot);
+  std::vector<RobotParameter> parameters = robot.parameters;
+  for (std::size_t i = 0; i < nominal.size(); ++i) {
+    RobotParameter& p = parameters[i];
+    const double a = nominal[i] * (1 - box), b = nominal[i] * (1 + box);
+    p = {p.name, p.unit, nominal[i], std::min(a, b), std::max(a, b)};
+  }
+  const std::string name = robot.name;
+  robot = robot_of_class(robot.kinematics, parameters);
+  robot.name = name;
+}
+
+// A truth that no calibration may find is a mistake, most often a nominal geometry that was left out.
+void require_truth_in_box(const JsonNode& truth, const RecordingScenario& s) {
+  for (std::size_t i = 0; i < s.truth.parameters.size(); ++i) {
+    const RobotParameter& p = s.robot.parameters[i];
+    const double value = s.truth.parameters[i];
+    if (value < p.lower || value > p.upper)
+      truth.fail(
+          fmt::format("{} = {}", p.name, value),
+          fmt::format("a value in the robot's box [{:.6g}, {:.6g}] about its nominal {:.6g}: /robot/nominal "
+                      "states the geometry of a robot of your own, /robot/box how far the truth may be off",
+                      p.lower, p.upper, p.nominal));
+  }
+}
+
 void read_robot(const JsonNode& node, RecordingScenario& s) {
-  node.allow_only({"truth", "kinematics", "contact_offset_m", "steering_limit_deg"});
-  if (node.has("truth")) s.truth.parameters = read_parameters(node.at("truth"), s.robot);
+  node.allow_only({"nominal", "box", "truth", "kinematics", "contact_offset_m", "steering_limit_deg"});
+  if (node.has("nominal") || node.has("box")) read_nominal(node, s.robot);
+  s.truth.parameters = s.control.believed = nominal_parameters(s.robot);
+  if (node.has("truth")) {
+    s.truth.parameters = read_parameters(node.at("truth"), s.robot);
+    require_truth_in_box(node.at("truth"), s);
+  }
   if (node.has("kinematics")) {
     const JsonNode kinematics = node.at("kinematics");
     const std::string name = kinematics.text();

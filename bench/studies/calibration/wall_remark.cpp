@@ -106,9 +106,9 @@ class ScaledNominal {
   std::vector<Eigen::Index> of_;  // kind of each parameter, -1: none
 };
 
-// The factor of one kind alone that brings the cost below what counts as an explanation, the best of them,
-// with what it leaves of the cost; "" where none does. Several at once would find combinations that drives do not
-// tell apart.
+// The factor of one kind alone that brings the cost below what counts as an explanation, the best of
+// them, with what it leaves of the cost; "" where none does. Several at once would find combinations that
+// drives do not tell apart.
 std::string kind_that_leaves(const CalibrationProblem& problem, double cost) {
   const ScaledNominal all(problem);
   std::string text;
