@@ -158,7 +158,8 @@ TEST_F(CliRobots, AnOriginOnTheRearAxleIsSaidAndServed) {
   EXPECT_THAT(own.err, Not(HasSubstr("evenly")));
   const auto record = records("run").at(0);
   double samples = 0;
-  for (const auto& r : nlohmann::json::parse(content(set)).at("recordings"))
+  const auto parsed = nlohmann::json::parse(content(set));
+  for (const auto& r : parsed.at("recordings"))
     samples += static_cast<double>(r.at("columns").at("time_us").size());
   ASSERT_GT(samples, 0);
   EXPECT_LT(std::sqrt(record["cost"].get<double>() / samples), 1e-3) << "root mean square, m and rad";

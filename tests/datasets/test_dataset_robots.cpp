@@ -9,6 +9,7 @@
 #include "datasets/dataset.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
+#include "tests/support/source_dir.hpp"
 
 namespace odobench {
 namespace {
@@ -88,6 +89,18 @@ TEST(DatasetRobots, TakesWheelsOfTheUsersOwn) {
       says(refused("wheels/0/radius", "wheels/1/radius"), {"radius of wheel 1, which the wheel states too"}));
   EXPECT_TRUE(says(refused("\"unit\": \"m\", \"nominal\": 0.05, ", "\"nominal\": 0.05, "),
                    {"/robot/parameters/1", "unit"}));
+}
+
+TEST(DatasetRobots, TheDocumentedExampleLoads) {
+  const std::string text = read_file(testing::source_dir() / "docs/data_format.md");
+  const std::size_t section = text.find("## set.json, schema version 2");
+  const std::size_t from = text.find("```json\n", section) + 8;
+  const TemporaryFolder folder;
+  const Dataset d = load_dataset(folder.file("set.json", text.substr(from, text.find("```", from) - from)));
+  EXPECT_EQ(d.robot.kinematics, "differential");
+  const double count = 2 * std::acos(-1.0) / 4096;
+  EXPECT_NEAR(d.recordings.at(0).signals[0].values[1], 76 * count, 1e-12) << "the counter ran over";
+  EXPECT_NEAR(d.recordings.at(0).signals[1].values[1], 98 * count, 1e-12) << "and this one backwards";
 }
 
 TEST(DatasetRobots, NamesWhatIsWrong) {
