@@ -93,7 +93,8 @@ CalibrationProblem::CalibrationProblem(const Robot& robot, std::vector<Recording
     if (options.mount) add_mount(parameters_);
     validate(parameters_);
     check_recordings(recordings_);
-    general_ = std::make_unique<WheeledForm>(robots::WheeledRobot(robot.table), recordings_, options);
+    general_ =
+        std::make_unique<WheeledForm>(robots::WheeledRobot(robot.table), recordings_, options, kernel_);
   }
   set_rounding_floor();
 }

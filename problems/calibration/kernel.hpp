@@ -39,6 +39,21 @@ struct CostSums {
   double squares[kMaxWidth];                // sum of ex^2 + ey^2
 };
 
+// Of any robot whose motions are M s, with S streams s a step (problems/calibration/linear_streams.hpp):
+//     data[(step * (streams + 2) + stream) * width + lane], the last two the reference position as above.
+// m: M (3 x S), row by row. The motion (ux, uy, d) of a step is turned by the heading at its start, after
+//     Euler's rule    nothing
+//     midpoint        a turn by d / 2
+//     arc             (ux a - uy b, ux b + uy a), a = sin(d) / d, b = (1 - cos(d)) / d.
+enum class StepRule { Euler, Midpoint, Arc };
+struct StreamBlock {
+  const double* data;
+  long steps;
+  int streams;
+  StepRule rule;
+};
+inline constexpr int kMostStreams = 16;
+
 struct NormalSums {
   CostSums cost;
   double heading0[kHeading][kMaxWidth];                   // in: dtheta/d(P, Q) at the segment's start
@@ -55,6 +70,9 @@ struct Kernel {
   // The same for blocks of width 1 (the last few steps of a recording).
   void (*cost_tail)(const Block&, const double* s, bool exact, CostSums&);
   void (*normal_tail)(const Block&, const double* s, bool exact, NormalSums&);
+  // Steps must turn by less than kMaxAngle.
+  void (*streams)(const StreamBlock&, const double* m, CostSums&);
+  void (*streams_tail)(const StreamBlock&, const double* m, CostSums&);
 };
 
 // Throws std::invalid_argument when the processor does not have it.

@@ -191,6 +191,106 @@ void run_normal(const Block& block, const double* s, NormalSums& sums) {
   for (int j = 0; j < kTriangle; ++j) store<W>(sums.jtj[j], jtj[j]);
 }
 
+// (a, b) of a step's rule, by their series for |d| < kMaxAngle.
+template <int W, StepRule Rule>
+inline void step_weights(const Pack<W>& d, Pack<W>& a, Pack<W>& b) {
+  if constexpr (Rule == StepRule::Midpoint) {
+    rotation<W, false>(0.5 * d, a, b);
+    a = a + splat<W>(1.0);
+  } else {
+    const Pack<W> q = d * d;
+    Pack<W> s = splat<W>(-1.0 / 39916800.0);
+    s = s * q + splat<W>(1.0 / 362880.0);
+    s = s * q + splat<W>(-1.0 / 5040.0);
+    s = s * q + splat<W>(1.0 / 120.0);
+    s = s * q + splat<W>(-1.0 / 6.0);
+    a = splat<W>(1.0) + q * s;
+    Pack<W> c = splat<W>(1.0 / 479001600.0);
+    c = c * q + splat<W>(-1.0 / 3628800.0);
+    c = c * q + splat<W>(1.0 / 40320.0);
+    c = c * q + splat<W>(-1.0 / 720.0);
+    c = c * q + splat<W>(1.0 / 24.0);
+    c = c * q + splat<W>(-0.5);
+    b = -(d * c);
+  }
+}
+
+// Streams: how many, 0: as the block says.
+template <int W, StepRule Rule, int Streams>
+void run_streams(const StreamBlock& block, const double* m, CostSums& sums) {
+  using V = Pack<W>;
+  const int count = Streams > 0 ? Streams : block.streams;
+  V mx[kMostStreams], my[kMostStreams], mt[kMostStreams];
+  for (int i = 0; i < count; ++i) {
+    mx[i] = splat<W>(m[i]);
+    my[i] = splat<W>(m[count + i]);
+    mt[i] = splat<W>(m[2 * count + i]);
+  }
+  V c = load<W>(sums.cos0), n = load<W>(sums.sin0);
+  V x = splat<W>(0), y = x, ex = x, ey = x, squares = x;
+  const double* row = block.data;
+  for (long k = 0; k < block.steps; ++k, row += (count + 2) * W) {
+    const V first = load<W>(row);
+    V ux = mx[0] * first, uy = my[0] * first, turn = mt[0] * first;
+#pragma GCC unroll 8
+    for (int i = 1; i < count; ++i) {
+      const V stream = load<W>(row + i * W);
+      ux = ux + mx[i] * stream;
+      uy = uy + my[i] * stream;
+      turn = turn + mt[i] * stream;
+    }
+    if constexpr (Rule != StepRule::Euler) {
+      V a, b;
+      step_weights<W, Rule>(turn, a, b);
+      const V ahead = ux * a - uy * b;
+      uy = ux * b + uy * a;
+      ux = ahead;
+    }
+    x = x + (c * ux - n * uy);
+    y = y + (n * ux + c * uy);
+    const V dx = x - load<W>(row + count * W), dy = y - load<W>(row + (count + 1) * W);
+    ex = ex + dx;
+    ey = ey + dy;
+    squares = squares + (dx * dx + dy * dy);
+    V cm, sn;
+    rotation<W, false>(turn, cm, sn);
+    const V next = c + (c * cm - n * sn);
+    n = n + (n * cm + c * sn);
+    c = next;
+  }
+  store<W>(sums.x, x);
+  store<W>(sums.y, y);
+  store<W>(sums.ex, ex);
+  store<W>(sums.ey, ey);
+  store<W>(sums.squares, squares);
+}
+
+template <int W, StepRule Rule>
+void streams_by_count(const StreamBlock& block, const double* m, CostSums& sums) {
+  switch (block.streams) {
+    case 2:
+      return run_streams<W, Rule, 2>(block, m, sums);
+    case 3:
+      return run_streams<W, Rule, 3>(block, m, sums);
+    case 4:
+      return run_streams<W, Rule, 4>(block, m, sums);
+    default:
+      return run_streams<W, Rule, 0>(block, m, sums);
+  }
+}
+
+template <int W>
+void streams_block(const StreamBlock& block, const double* m, CostSums& sums) {
+  switch (block.rule) {
+    case StepRule::Euler:
+      return streams_by_count<W, StepRule::Euler>(block, m, sums);
+    case StepRule::Midpoint:
+      return streams_by_count<W, StepRule::Midpoint>(block, m, sums);
+    default:
+      return streams_by_count<W, StepRule::Arc>(block, m, sums);
+  }
+}
+
 template <int W>
 void cost_block(const Block& block, const double* s, bool exact, CostSums& sums) {
   exact ? run_cost<W, true>(block, s, sums) : run_cost<W, false>(block, s, sums);
@@ -203,7 +303,8 @@ void normal_block(const Block& block, const double* s, bool exact, NormalSums& s
 
 template <int W>
 constexpr Kernel make_kernel() {
-  return {W, cost_block<W>, normal_block<W>, cost_block<1>, normal_block<1>};
+  return {
+      W, cost_block<W>, normal_block<W>, cost_block<1>, normal_block<1>, streams_block<W>, streams_block<1>};
 }
 
 }  // namespace

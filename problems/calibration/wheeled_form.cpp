@@ -46,7 +46,7 @@ std::vector<std::size_t> reference_stamps(const Recording& recording) {
 }  // namespace
 
 WheeledForm::WheeledForm(robots::WheeledRobot robot, const std::vector<Recording>& recordings,
-                         const CalibrationOptions& options)
+                         const CalibrationOptions& options, InstructionSet kernel)
     : robot_(std::move(robot)), options_(options) {
   const auto own = static_cast<Index>(robot_.parameters().size());
   parameter_count_ = own + (options_.mount ? 3 : 0);
@@ -54,6 +54,19 @@ WheeledForm::WheeledForm(robots::WheeledRobot robot, const std::vector<Recording
     drives_.push_back(prepare(recording));
     residual_count_ += drives_.back().residuals;
   }
+  prepare_fast_cost(kernel);
+}
+
+void WheeledForm::prepare_fast_cost(InstructionSet kernel) {
+  if (options_.cost != CostKind::EverySample || options_.mount || !robot_.is_linear() ||
+      !LinearStreams::serves(options_.rule, robot_.stream_count()))
+    return;
+  for (const Drive& drive : drives_)
+    if (drive.wrapped) return;
+  fast_ = std::make_unique<LinearStreams>(robot_.matrix(robot_.nominal()), options_.rule, kernel);
+  for (const Drive& drive : drives_)
+    fast_->add(drive.streams, drive.start, drive.reference.rightCols(drive.reference.cols() - 1));
+  fast_->finish();
 }
 
 WheeledForm::Drive WheeledForm::prepare(const Recording& recording) const {
@@ -262,6 +275,10 @@ void WheeledForm::piece_residuals(const Drive& drive, const Point& at, const Mat
 
 double WheeledForm::cost(const ConstVectorRef& z) const {
   const Point at = point(z, false);
+  if (fast_ && at.usable) {
+    const double cost = fast_->cost(at.matrix, options_.position_weight, options_.heading_weight);
+    if (!std::isnan(cost)) return cost;
+  }
   double sum = 0;
   Vector r;
   for (const Drive& drive : drives_) {

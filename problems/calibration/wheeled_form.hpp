@@ -9,10 +9,12 @@
 //     R(-l_th - alpha_i) [c_j - c_i + (R(alpha_j) - R(alpha_i)) l_xy],   alpha_j - alpha_i
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "datasets/recording.hpp"
 #include "problems/calibration/calibration_options.hpp"
+#include "problems/calibration/linear_streams.hpp"
 #include "problems/problem.hpp"
 #include "problems/robots/wheeled_robot.hpp"
 
@@ -24,7 +26,7 @@ class WheeledForm {
   // is no speed, increment or angle where the robot needs it, speeds beside increments; no reference after
   // the start.
   WheeledForm(robots::WheeledRobot robot, const std::vector<Recording>& recordings,
-              const CalibrationOptions& options);
+              const CalibrationOptions& options, InstructionSet kernel = widest_instruction_set());
 
   const robots::WheeledRobot& robot() const { return robot_; }
   // Rows of every recording (of Segments: where pieces begin and end), the first of them the start.
@@ -64,6 +66,7 @@ class WheeledForm {
   };
 
   Drive prepare(const Recording& recording) const;
+  void prepare_fast_cost(InstructionSet kernel);
   void choose_rows(const Recording& recording, Drive& drive) const;
   Point point(const ConstVectorRef& z, bool derivatives) const;
   Matrix motions(const Drive& drive, const Point& at) const;
@@ -80,6 +83,7 @@ class WheeledForm {
   CalibrationOptions options_;
   Eigen::Index parameter_count_ = 0, residual_count_ = 0;
   std::vector<Drive> drives_;
+  std::unique_ptr<LinearStreams> fast_;  // of a linear robot with a reference at every sample
 };
 
 }  // namespace odobench

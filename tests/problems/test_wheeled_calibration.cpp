@@ -181,6 +181,59 @@ TEST(WheeledCalibration, TheThesisRobotByTheGeneralPathAgreesWithTheStructuredFo
   }
 }
 
+TEST(WheeledCalibration, EveryKernelAgreesWithTheGeneralForm) {
+  // Several blocks and segments, tails, and drives shorter than a register is wide.
+  for (const std::string kinematics : {"differential", "omni3", "mecanum", "swerve"}) {
+    const Robot robot = robot_of_class(kinematics, {});
+    std::vector<Recording> recordings;
+    for (const int samples : {4'611, 2, 7, 260, 2'048})
+      recordings.push_back(made_up_drive(robot, samples, SignalKind::Increment));
+    for (const IntegrationRule rule :
+         {IntegrationRule::Euler, IntegrationRule::Midpoint, IntegrationRule::Arc}) {
+      CalibrationOptions options;
+      options.rule = rule;
+      options.position_weight = 3;
+      options.heading_weight = 0.5;
+      for (const InstructionSet kernel : available_instruction_sets()) {
+        const CalibrationProblem problem(robot, recordings, options, kernel);
+        ASSERT_FALSE(problem.structured());
+        for (int variant = 0; variant < 3; ++variant) {
+          const Vector z = inside(problem.parameters(), variant);
+          Vector r(problem.residual_count());
+          problem.residuals(z, r);
+          EXPECT_NEAR(problem.cost(z) / r.squaredNorm(), 1, 1e-11)
+              << kinematics << " " << options.text() << " " << to_string(kernel);
+        }
+      }
+    }
+  }
+}
+
+TEST(WheeledCalibration, StepsThatTurnFarAreLeftToTheGeneralForm) {
+  const Robot robot = robot_of_class("differential", {});
+  Recording r = made_up_drive(robot, 60, SignalKind::Increment);
+  for (double& value : r.signals[0].values) value *= 10;  // up to 0.6 rad a step
+  CalibrationOptions options;
+  options.rule = IntegrationRule::Arc;
+  const CalibrationProblem problem(robot, {r}, options);
+  const Vector z = inside(problem.parameters(), 1);
+  Vector residuals(problem.residual_count());
+  problem.residuals(z, residuals);
+  EXPECT_NEAR(problem.cost(z) / residuals.squaredNorm(), 1, 1e-13);
+}
+
+TEST(WheeledCalibration, ExactDataHaveNoCostToAllDigits) {
+  const Robot robot = robot_of_class("mecanum", {});
+  CalibrationOptions options;
+  options.rule = IntegrationRule::Arc;
+  Recording r = made_up_drive(robot, 3'000, SignalKind::Increment);
+  const Vector truth = inside(CalibrationProblem(robot, {r}, options).parameters(), 2);
+  r = driven(robot, r, truth, options);
+  const CalibrationProblem problem(robot, {r}, options);
+  EXPECT_LT(problem.cost(truth), problem.rounding_floor(truth));
+  EXPECT_GE(problem.cost(truth), 0);
+}
+
 TEST(WheeledCalibration, TheFirstIncrementIsNeverUsed) {
   const Robot robot = robot_of_class("differential", {});
   Recording r = made_up_drive(robot, 30, SignalKind::Increment);
