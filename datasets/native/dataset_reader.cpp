@@ -138,8 +138,15 @@ void read_inline_columns(const JsonNode& node, const ColumnsFormat& format, Reco
   if (node.has("samples") && node.at("samples").integer() != static_cast<std::int64_t>(recording.size()))
     node.at("samples").fail(fmt::format("{}", node.at("samples").integer()),
                             fmt::format("{} as in time_us", recording.size()));
-  for (std::size_t i = 0; i < format.signals.size(); ++i)
-    convert(format.signals[i], recording.signals[i].values);
+  for (std::size_t i = 0; i < format.signals.size(); ++i) {
+    std::vector<double>& values = recording.signals[i].values;
+    if (const auto sample = beyond_counter(format.signals[i], values))
+      columns.at(format.signals[i].name)
+          .elements()[*sample]
+          .fail(fmt::format("{}", values[*sample]),
+                fmt::format("a count of {} bits", format.signals[i].bits));
+    convert(format.signals[i], values);
+  }
 }
 
 // FOLDER/TEXT, which a set that comes from elsewhere must not use to name a file outside its folder: neither

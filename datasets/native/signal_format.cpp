@@ -31,9 +31,11 @@ double scale_of(const JsonNode& node, const std::string& unit, const Units& unit
   node.fail('"' + shown(unit) + '"', expected);
 }
 
+// What is divided by: no gear, no wheel is beyond these limits.
 double positive(const JsonNode& node) {
   const double value = node.number();
-  if (!(value > 0)) node.fail(fmt::format("{}", value), "a number above 0");
+  if (!(value >= 1e-6) || !(value <= 1e12))
+    node.fail(fmt::format("{}", value), "a number above 0, from 1e-6 to 1e12");
   return value;
 }
 
@@ -99,6 +101,14 @@ SignalFormat format_of(const Signal& signal) {
                                                    : Kind::Increment;
   format.unit = unit_of(signal.kind);
   return format;
+}
+
+std::optional<std::size_t> beyond_counter(const SignalFormat& format, const std::vector<double>& values) {
+  if (format.bits == 0) return std::nullopt;
+  const double most = std::ldexp(1.0, format.bits);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(std::abs(values[k]) <= most)) return k;
+  return std::nullopt;
 }
 
 void convert(const SignalFormat& format, std::vector<double>& values) {

@@ -2,6 +2,7 @@
 // or angles.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct SignalFormat {
 
 SignalFormat read_signal_format(const JsonNode& node);
 SignalFormat format_of(const Signal& signal);
+
+// The first entry that a counter of so many bits, signed or not, cannot hold.
+std::optional<std::size_t> beyond_counter(const SignalFormat& format, const std::vector<double>& values);
 
 // Turns the column into the signal in place. A counter of n bits that runs over is read as the shorter way
 // round: right as long as it moves by less than 2^(n - 1) between two stamps.

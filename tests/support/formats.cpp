@@ -141,6 +141,39 @@ std::vector<Words> read_scenario(const std::string& bytes, const TemporaryFolder
            "--out=" + out(folder, "drive")}};
 }
 
+// A set of schema 2: counts that run over, a reference here and there, parameters that are one.
+std::string robot_set() {
+  return R"({"schema": "odobench-dataset", "schema_version": 2, "name": "mine",
+ "robot": {"name": "r", "kinematics": "differential", "twist": "least_squares", "integration": "arc",
+  "parameters": [{"name": "b", "nominal": 0.3}, {"name": "r_right", "unit": "m", "nominal": 0.05, "lower": 0.04, "upper": 0.06},
+                 {"name": "r_left", "equals": "r_right"}]},
+ "signals": [{"name": "wheel.right", "kind": "position", "unit": "count", "per_turn": 100, "bits": 8, "sign": -1},
+             {"name": "wheel.left", "kind": "travel", "unit": "m", "radius": 0.05}],
+ "trajectories": [{"name": "t"}],
+ "known_parameters": [{"name": "truth", "values": {"b": 0.31, "r_right": 0.051}}],
+ "recordings": [{"id": "t1", "trajectory": "t", "repetition": 1, "samples": 4, "columns": {
+   "time_us": [0, 50000, 100000, 150000], "x": [0, null, 0.01, 0.03], "y": [0, null, 0.001, 0.002],
+   "theta": [0.1, null, 0.2, 0.4], "wheel.right": [250, 254, 3, 1], "wheel.left": [0, 0.01, 0.02, 0.04]}}]}
+)";
+}
+// Wheels of one's own, one of each sort.
+std::string own_wheels_set() {
+  return R"({"schema": "odobench-dataset", "schema_version": 2, "name": "own",
+ "robot": {"name": "r", "kinematics": "wheels", "integration": "midpoint",
+  "wheels": [{"x": 0.2, "y": 0, "drive": {"wheel.a": 0.5, "wheel.b": 0.5}, "steering": "steer", "offset": 0.01, "trail": 0.02},
+             {"x": 0, "mount": 0.1, "radius": 0.05, "roller": 0.3, "drive": "wheel.b", "slides": true}, {"x": 0}],
+  "parameters": [{"name": "r", "unit": "m", "nominal": 0.05, "sets": "wheels/0/radius"},
+                 {"name": "w", "unit": "m", "nominal": 0.2, "lower": 0.1, "upper": 0.3, "sets": {"wheels/1/y": 1, "wheels/2/y": -1}},
+                 {"name": "z", "unit": "rad", "nominal": 0, "sets": ["wheels/0/zero"]}]},
+ "signals": [{"name": "wheel.a", "kind": "speed", "unit": "rpm"}, {"name": "wheel.b", "kind": "speed", "unit": "rad/s"},
+             {"name": "steer", "kind": "angle", "unit": "deg"}],
+ "trajectories": [{"name": "t"}],
+ "recordings": [{"id": "t1", "trajectory": "t", "repetition": 1, "columns": {
+   "time_us": [0, 50000, 100000], "x": [0, 0.01, 0.02], "y": [0, 0, 0.01], "theta": [0, 0.1, 0.2],
+   "wheel.a": [10, 20, 30], "wheel.b": [1, 2, 3], "steer": [5, -5, 20]}}]}
+)";
+}
+
 std::vector<Format> make_formats() {
   using Files = const TemporaryFolder&;
   using Bytes = const std::string&;
@@ -155,6 +188,17 @@ std::vector<Format> make_formats() {
            fs::copy(prepared() / "files_recordings", f / "files_recordings", fs::copy_options::recursive);
          const std::string file = f.file("set.json", b);
          return {{"evaluate", "--data=" + file, "--out=" + out(f, "run"), "--overwrite"},
+                 {"list", "data", file}};
+       }},
+      {"robots",
+       [] {
+         return std::vector<std::string>{robot_set(), own_wheels_set()};
+       },
+       [](Bytes b, Files f) -> Commands {
+         const std::string file = f.file("set.json", b);
+         return {{"evaluate", "--data=" + file, "--cost=segments", "--distance=0.01", "--mount",
+                  "--out=" + out(f, "run"), "--overwrite"},
+                 {"--data=" + file, "--solver=lm", "--max-evals=30", "--quiet"},
                  {"list", "data", file}};
        }},
       {"recording",
