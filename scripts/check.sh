@@ -42,7 +42,8 @@ reports/render
 reports/regression            reports/records reports/statistics reports/render
 reports/figures               reports/render
 reports/kinds                 reports/records reports/statistics reports/render reports/figures
-reports/kinds/fusion          reports/records reports/statistics reports/render reports/figures reports/kinds/calibration
+reports/kinds/fusion          reports/records reports/statistics reports/render reports/figures reports/kinds reports/kinds/calibration
+reports/kinds/kinds.cpp       reports/
 reports/page                  reports/
 problems
 problems/calibration          problems problems/robots datasets datasets/robots

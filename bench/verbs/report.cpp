@@ -16,6 +16,7 @@
 #include "bench/studies/records.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
+#include "reports/kinds/kinds.hpp"
 #include "reports/page/report_document.hpp"
 #include "reports/page/web_assets.hpp"
 
@@ -60,6 +61,7 @@ ReportInput report_input(const ReportOptions& options, const std::vector<RunReco
     if (tracks && std::any_of(records.begin(), records.end(), belongs))
       input.tracks.push_back(std::move(*tracks));
   }
+  input.absent = unknown_records(records);
   bool drives = false;
   for (const RunRecord& r : records) drives = drives || !r.errors.empty();
   if (drives && input.tracks.empty())
@@ -70,12 +72,11 @@ ReportInput report_input(const ReportOptions& options, const std::vector<RunReco
   return input;
 }
 
-// A name that is no other label's: "pso[swarm=60]" -> "pso-swarm-60-".
-
 ExitCode report_command(const ReportOptions& options) {
   const Format format = parse_format(options.format);
   TerminalWatcher watcher;
   const std::vector<RunRecord> records = read_all_records(options.runs, watcher);
+  for (const std::string& sentence : unknown_records(records)) watcher.warn(sentence);
   if (options.out.empty() && options.figures.empty()) {
     print_tables(
         record_tables(records, notes_of_best(records), format == Format::Json || format == Format::Csv),

@@ -273,4 +273,11 @@ void add_track_figures(const TrackSet& set, const std::string& prefix, Section& 
   }
 }
 
+void add_track_figures(const PlacedTracks& tracks, Section& section, Document& document) {
+  const std::size_t before = section.blocks.size();
+  add_track_figures(*tracks.set, tracks.prefix, section, document, tracks.rows);
+  for (std::size_t b = before; b < section.blocks.size(); ++b)
+    std::get<Figure>(section.blocks[b]).title += tracks.suffix;
+}
+
 }  // namespace odobench

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "reports/figures/document.hpp"
+#include "reports/kinds/kind.hpp"
 #include "reports/records/tracks.hpp"
 
 namespace odobench {
@@ -20,5 +21,7 @@ inline constexpr std::size_t kTrackRows = 40000;
 // drive and variable is always among them.
 void add_track_figures(const TrackSet& set, const std::string& prefix, Section& section, Document& document,
                        std::size_t rows = kTrackRows);
+// The same in their place on the page.
+void add_track_figures(const PlacedTracks& tracks, Section& section, Document& document);
 
 }  // namespace odobench

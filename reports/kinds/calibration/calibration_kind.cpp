@@ -1,0 +1,148 @@
+#include "reports/kinds/calibration/calibration_kind.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "reports/figures/vega.hpp"
+#include "reports/kinds/calibration/calibration_tables.hpp"
+#include "reports/kinds/calibration/run_figures.hpp"
+#include "reports/kinds/calibration/table_parts.hpp"
+#include "reports/kinds/calibration/track_figures.hpp"
+
+namespace odobench {
+namespace {
+
+std::string prefix_of(const Comparison& comparison) {
+  return comparison.id_prefix.empty() ? "" : vega::slug(comparison.problem + "-" + comparison.dataset) + ".";
+}
+
+// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of
+// 18 mean errors got worse."
+std::string headline(const Comparison& comparison) {
+  const ComparisonRow* best = nullptr;
+  for (const ComparisonRow& row : comparison.rows)
+    if (row.label != "nominal" && row.shown->cost &&
+        (best == nullptr || *row.shown->cost < *best->shown->cost))
+      best = &row;
+  if (best == nullptr) return "";
+  const ComparisonRow* nominal = comparison.nominal();
+  std::string text =
+      fmt::format("Lowest J{}: {:.10g} by {}", comparison.title_suffix, *best->shown->cost, best->label);
+  if (nominal == nullptr || !nominal->shown->cost) return text + ".";
+  text += fmt::format("; nominal {:.10g}.", *nominal->shown->cost);
+  if (best->errors.empty() || best->errors.size() != nominal->errors.size()) return text;
+  const double total = error_totals(best->errors).total, before = error_totals(nominal->errors).total;
+  const WorseMeans worse = worse_means(*best, *nominal);
+  return text + fmt::format(
+                    " Its total error is {:.6f}, nominal {:.6f} ({:+.2f} %); {} of {} mean errors got worse.",
+                    total, before, 100 * (total - before) / before, worse.worse, worse.all);
+}
+
+// The table without the columns of these ids.
+Table without(Table table, const std::set<std::string>& ids) {
+  for (std::size_t c = table.columns.size(); c-- > 0;) {
+    if (ids.count(table.columns[c].id) == 0) continue;
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    table.columns.erase(table.columns.begin() + at);
+    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
+  }
+  return table;
+}
+
+void append_if(std::optional<Table> table, Section& section) {
+  if (table) section.blocks.emplace_back(std::move(*table));
+}
+
+void summarise(const std::vector<Comparison>& comparisons, Section& summary) {
+  for (const Comparison& c : comparisons) {
+    const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
+                                 [](const ComparisonRow& r) { return r.kind != "evaluation"; });
+    if (const std::string text = headline(c); !text.empty()) summary.blocks.emplace_back(Paragraph{text});
+    if (has_costs(c))
+      summary.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
+                                      : cost_table(c));
+    append_if(totals_table(c), summary);
+  }
+}
+
+Section errors(const std::vector<Comparison>& comparisons) {
+  Section section{
+      "errors",
+      "Errors",
+      "Per trajectory and variable: the largest error of the drives, their mean and standard deviation; in "
+      "brackets the difference to nominal.",
+      {}};
+  for (const Comparison& c : comparisons) {
+    if (c.rows.size() == 1)
+      append_if(error_overview(c), section);
+    else
+      append(error_tables(c), section);
+  }
+  return section;
+}
+
+Section convergence(const std::vector<Comparison>& comparisons, Document& document) {
+  Section section{"convergence", "Convergence", "How fast each method gets how low.", {}};
+  for (const Comparison& c : comparisons) {
+    add_convergence_figures(c, prefix_of(c), section, document);
+    add_repeat_figure(c, prefix_of(c), section, document);
+    append_if(repeats_table(c), section);
+  }
+  return section;
+}
+
+Section parameters(const std::vector<Comparison>& comparisons, const std::vector<std::string>& notes,
+                   Document& document) {
+  Section section{"parameters", "Parameters", "What was found, against the bounds.", {}};
+  for (const Comparison& c : comparisons) {
+    std::optional<Table> table = parameter_table(c);
+    if (!table) continue;
+    add_parameter_figure(c, prefix_of(c), section, document);
+    table->notes.insert(table->notes.end(), notes.begin(), notes.end());
+    append_if(std::move(table), section);
+  }
+  return section;
+}
+
+void add_calibration_page(const KindInput& input, Section& summary, Document& document) {
+  const std::vector<Comparison> comparisons = compare(input.records);
+  summarise(comparisons, summary);
+  finish(errors(comparisons), document);
+  Section trajectories{"trajectories",
+                       "Trajectories",
+                       "Where the robot was, and where odometry says it was with each result's parameters.",
+                       {}};
+  for (const PlacedTracks& tracks : input.tracks) add_track_figures(tracks, trajectories, document);
+  finish(std::move(trajectories), document);
+  finish(convergence(comparisons, document), document);
+  finish(parameters(comparisons, input.notes, document), document);
+  Section identifiability{
+      "identifiability",
+      "Identifiability",
+      "Which combinations of parameters these recordings determine, and which they do not.",
+      {}};
+  for (const Comparison& c : comparisons) add_identifiability(c, prefix_of(c), identifiability, document);
+  finish(std::move(identifiability), document);
+}
+
+std::vector<Table> calibration_tables(const KindInput& input) {
+  return comparison_tables(input.records, input.notes);
+}
+
+}  // namespace
+
+RecordKind calibration_kind() {
+  return {"calibration",
+          "parameters found by a solver, or given ones: cost, errors, effort",
+          nullptr,
+          nullptr,
+          calibration_tables,
+          add_calibration_page,
+          nullptr};
+}
+
+}  // namespace odobench
