@@ -1,9 +1,5 @@
 #include "bench/verbs/tune.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 #include "base/files.hpp"
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
@@ -13,6 +9,7 @@
 #include "bench/studies/fusion/tuning_study.hpp"
 #include "bench/studies/run_folder.hpp"
 #include "bench/verbs/common_options.hpp"
+#include "reports/kinds/fusion/tuning_tables.hpp"
 
 namespace odobench {
 namespace {
@@ -55,45 +52,6 @@ void add_options(CLI::App& app, TuneOptions& o) {
   add_format(app, o.format);
 }
 
-Table sigma_table(const Tuning& tuning) {
-  Table table{"sigmas", "Standard deviations that the filter believes", {text_column("parameter")}, {}, {}};
-  for (const TunedSetting& s : tuning.settings) table.columns.push_back(number_column(s.label, s.label));
-  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(tuning.parameters.size()); ++i) {
-    const std::string& name = tuning.parameters[static_cast<std::size_t>(i)].name;
-    table.rows.push_back({text_cell(name.substr(name.find(' ') + 1))});
-    for (const TunedSetting& s : tuning.settings)
-      table.rows.back().push_back(significant_cell(std::pow(10.0, s.x[i]), 4));
-  }
-  table.notes.push_back("Position in m, heading in rad, velocity in m/s, yaw rate in rad/s.");
-  table.notes.insert(table.notes.end(), tuning.remarks.begin(), tuning.remarks.end());
-  return table;
-}
-
-Table result_table(const Tuning& tuning, const std::string& objective) {
-  Table table{
-      "tuning",
-      fmt::format("Tuning by {} on {} recordings, judged on {}{}", objective, tuning.training,
-                  tuning.held_out == 0 ? tuning.training : tuning.held_out,
-                  tuning.held_out == 0 ? " (the same ones: there are no others)" : " others"),
-      {text_column("setting"), best_if(Better::Lower, number_column("cost")), number_column("evaluations"),
-       best_if(Better::Lower, number_column("rmse_position", "RMSE position", "m")),
-       best_if(Better::Lower, number_column("rmse_heading", "RMSE heading", "rad")),
-       number_column("nees", "NEES"), text_column("verdict"), text_column("stop")},
-      {},
-      {}};
-  for (const TunedSetting& one : tuning.settings)
-    table.rows.push_back({text_cell(one.label), significant_cell(one.cost, 8), count_cell(one.evaluations),
-                          fixed_cell(one.judged.row.rmse_position, 6),
-                          fixed_cell(one.judged.row.rmse_heading, 6), fixed_cell(one.judged.row.mean_nees, 2),
-                          text_cell(one.judged.row.verdict), text_cell(one.stop)});
-  if (objective == "likelihood")
-    table.notes.push_back(
-        "The likelihood sees the innovations only: sensors that drift make it prefer sigmas that follow "
-        "them. Compare "
-        "NEES.");
-  return table;
-}
-
 ExitCode tune_command(const TuneOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
   refuse_existing("--out", options.out, options.overwrite);
@@ -101,7 +59,7 @@ ExitCode tune_command(const TuneOptions& options, const Catalogue& catalogue) {
   folder.require_free();
   TerminalWatcher watcher;
   const Tuning tuning = tune_filter(options.study, catalogue, watcher, InterruptGuard::stop());
-  if (tuning.settings.size() == 1) {
+  if (tuning.records.size() == 1) {
     warn("not one solver gave a result");
     return ExitCode::CheckFailed;
   }
@@ -109,8 +67,8 @@ ExitCode tune_command(const TuneOptions& options, const Catalogue& catalogue) {
     watcher.results_begin();
     write_file(options.out, tuning.best_sensors, existing_files(options.overwrite));
   }
-  const std::vector<Table> tables{tuning.sensors, sigma_table(tuning),
-                                  result_table(tuning, options.study.objective)};
+  std::vector<Table> tables = tuning_tables(tuning.records, tuning.circumstances);
+  tables.insert(tables.begin(), tuning.sensors);
   folder.keep(tuning.records, tables, watcher);
   print_tables(tables, format);
   return ExitCode::Success;

@@ -392,7 +392,7 @@ TEST(VerificationStudy, DrivesEverySetAndNominal) {
   study.parameters = {"nominal"};
   const Verification v = verify_parameters(study, watcher, Stop());
   EXPECT_THAT(labels_of(v.records), ElementsAre("nominal"));
-  EXPECT_THAT(v.outcomes.at(0).at(0).arrival, SizeIs(v.drives.size()));
+  EXPECT_THAT(v.rounds.outcomes.at(0).at(0).arrival, SizeIs(v.rounds.drives.size()));
 }
 
 TEST(TuningStudy, RefusesAndStopsBeforeItFits) {

@@ -24,6 +24,16 @@
 namespace odobench {
 namespace {
 
+// One setting of the sigmas: the given one, or what a solver found.
+struct TunedSetting {
+  std::string label;
+  Vector x;  // log10 of the sigmas, in the order of the problem's parameters
+  double cost = 0;
+  double evaluations = 0;
+  std::string stop;
+  FusedRow judged;  // on recordings that the fit has not seen, where there are such
+};
+
 struct Split {
   std::vector<Recording> training, held_out;
 };
@@ -104,8 +114,8 @@ std::vector<RunRecord> tuning_records(const Problem& problem, const std::vector<
   const RunContext context = run_context(1, kernel_in_force(study.kernel));
   std::vector<RunRecord> records;
   for (const TunedSetting& s : settings) {
-    RunRecord record = study_record("tuning:" + study.objective, loaded.dataset_name(), s.label,
-                                    problem.parameters(), s.x, context);
+    RunRecord record = study_record(fmt::format("{}:{}", kTuningProblem, study.objective),
+                                    loaded.dataset_name(), s.label, problem.parameters(), s.x, context);
     record.dataset_sha256 = loaded.dataset_sha256;
     record.seed = record.base_seed = seed;
     record.message = s.judged.row.verdict;
@@ -176,18 +186,20 @@ Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher
       all_streams(sensors, s.training, seed, 0, stop), sensors.options, objective);
   const Problem problem(model);
 
-  Tuning tuning{problem.parameters(), {}, {}, s.training.size(), s.held_out.size(), {}, {}, {}};
-  tuning.settings = fitted(problem, *model, solvers, catalogue, study, seed, loaded.dataset_name(),
-                           tuning.remarks, watcher, stop);
-  for (TunedSetting& setting : tuning.settings) {
+  Tuning tuning;
+  tuning.circumstances = {{}, s.training.size(), s.held_out.size()};
+  std::vector<TunedSetting> settings =
+      fitted(problem, *model, solvers, catalogue, study, seed, loaded.dataset_name(),
+             tuning.circumstances.remarks, watcher, stop);
+  for (TunedSetting& setting : settings) {
     SensorsFile changed = sensors;
     std::vector<std::vector<SensorStream>> streams = judge_streams;
     for (std::vector<SensorStream>& one : streams) model->apply(setting.x, changed.options, one);
     setting.judged = fuse_all(judge, sets[0].values, filter, changed, streams, 0, stop);
   }
   tuning.sensors = sensor_table(sensors, seed, loaded.dataset_name());
-  tuning.best_sensors = best_sensors(study, *model, sensors, tuning.settings);
-  tuning.records = tuning_records(problem, tuning.settings, loaded, study, seed);
+  tuning.best_sensors = best_sensors(study, *model, sensors, settings);
+  tuning.records = tuning_records(problem, settings, loaded, study, seed);
   return tuning;
 }
 

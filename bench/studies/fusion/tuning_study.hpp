@@ -11,6 +11,7 @@
 #include "bench/studies/fusion/fusion_runs.hpp"
 #include "bench/studies/watcher.hpp"
 #include "problems/problem.hpp"
+#include "reports/kinds/fusion/tuning_tables.hpp"
 #include "reports/records/record.hpp"
 
 namespace odobench {
@@ -27,24 +28,11 @@ struct TuningStudy {
   std::optional<InstructionSet> kernel;
 };
 
-// One setting of the sigmas: the given one, or what a solver found.
-struct TunedSetting {
-  std::string label;
-  Vector x;  // log10 of the sigmas, in the order of Tuning::parameters
-  double cost = 0;
-  double evaluations = 0;
-  std::string stop;
-  FusedRow judged;  // on recordings that the fit has not seen, where there are such
-};
-
 struct Tuning {
-  std::vector<ParameterInfo> parameters;
-  std::vector<TunedSetting> settings;  // the given one first; alone when no solver gave a result
-  std::vector<std::string> remarks;
-  std::size_t training = 0, held_out = 0;  // recordings; without held-out ones the same judge
-  Table sensors;                           // which they are
-  std::string best_sensors;                // text of a sensors file with the sigmas that cost least
-  std::vector<RunRecord> records;          // one per setting
+  TuningCircumstances circumstances;
+  Table sensors;                   // which they are
+  std::string best_sensors;        // text of a sensors file with the sigmas that cost least
+  std::vector<RunRecord> records;  // one per setting, the given one first; alone when no solver gave a result
 };
 
 // The first drive of each trajectory trains; the others judge, or the same ones where there are no others.

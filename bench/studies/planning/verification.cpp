@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,26 +11,13 @@
 #include "bench/catalogue/problem_factory.hpp"
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/work_size.hpp"
 #include "problems/simulation/simulated_set.hpp"
-#include "reports/kinds/verification/verification_tables.hpp"
+#include "reports/statistics/statistics.hpp"
 
 namespace odobench {
-
-Estimate estimate(const std::vector<double>& values) {
-  const ErrorStatistics s = error_statistics_of(values);
-  if (values.size() < 2 || std::isnan(s.mean)) return {s.mean, std::nullopt};
-  const auto n = static_cast<double>(values.size());
-  const boost::math::students_t distribution(n - 1);
-  return {s.mean, boost::math::quantile(distribution, 0.975) * s.sigma / std::sqrt(n)};
-}
-
-std::vector<double> picked(const std::vector<VerifyOutcome>& outcomes, const Pick& pick) {
-  std::vector<double> values;
-  for (const VerifyOutcome& o : outcomes) values.push_back(pick(o));
-  return values;
-}
 
 namespace {
 
@@ -142,21 +128,23 @@ Verification verify_parameters(const VerificationStudy& study, Watcher& watcher,
         "--scenario={}: it is open loop; parameters that a robot believes matter in the closed loop only",
         study.scenario));
   Verification v;
-  for (const simulate::Drive& drive : scenario.drives) v.drives.push_back(drive.name);
-  v.sets = read_sets(scenario, study);
-  const std::vector<simulate::RecordingScenario> scenarios = believing(scenario, v.sets);
-  require_and_announce(study, scenario, v.sets.size(), watcher);
-  v.outcomes.resize(v.sets.size());
-  watcher.count_begins("tours of all drives", static_cast<std::int64_t>(v.sets.size()) * study.repeat);
-  for (std::size_t i = 0; i < v.sets.size(); ++i)
+  std::vector<std::vector<VerifyOutcome>>& outcomes = v.rounds.outcomes;
+  for (const simulate::Drive& drive : scenario.drives) v.rounds.drives.push_back(drive.name);
+  const std::vector<ParameterSet> sets = read_sets(scenario, study);
+  for (const ParameterSet& set : sets) v.rounds.labels.push_back(set.label);
+  const std::vector<simulate::RecordingScenario> scenarios = believing(scenario, sets);
+  require_and_announce(study, scenario, sets.size(), watcher);
+  outcomes.resize(sets.size());
+  watcher.count_begins("tours of all drives", static_cast<std::int64_t>(sets.size()) * study.repeat);
+  for (std::size_t i = 0; i < sets.size(); ++i)
     for (int k = 1; k <= study.repeat; ++k) {
       stop.check();
       const std::uint64_t seed = derive_seed(study.seed, {"verify", scenario.name, std::to_string(k)});
-      v.outcomes[i].push_back(drive_once(scenarios[i], v.sets[i].values, seed, study.threads, kernel));
+      outcomes[i].push_back(drive_once(scenarios[i], sets[i].values, seed, study.threads, kernel));
       watcher.count_one();
     }
   watcher.count_ends();
-  v.records = verification_records(scenario, v.sets, v.outcomes, study, kernel);
+  v.records = verification_records(scenario, sets, outcomes, study, kernel);
   return v;
 }
 

@@ -7,6 +7,7 @@
 #include "reports/kinds/calibration/track_figures.hpp"
 #include "reports/kinds/fusion/fusion_figures.hpp"
 #include "reports/kinds/fusion/fusion_record.hpp"
+#include "reports/kinds/fusion/tuning_tables.hpp"
 
 namespace odobench {
 namespace {

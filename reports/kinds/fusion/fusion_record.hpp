@@ -11,7 +11,6 @@
 namespace odobench {
 
 inline constexpr const char* kFusionProblem = "fusion";
-inline constexpr const char* kTuningProblem = "tuning";  // "tuning:OBJECTIVE"
 
 void put_fusion_row(const FusionRow& row, RunRecord& record);
 FusionRow fusion_row(const RunRecord& record);
