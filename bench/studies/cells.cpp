@@ -62,7 +62,9 @@ class Dispatcher {
     options.solvers = &cells_.catalogue().solvers();
     options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
     const Problem own = problems_[cell.problem];  // a copy has evaluation counts of its own
-    const Vector start = cell.random_start ? random_start(own, cell.start_seed) : own.start();
+    const Vector start = cell.random_start        ? random_start(own, cell.start_seed)
+                         : cell.start.size() == 0 ? own.start()
+                                                  : cell.start;
     const std::string begin = utc_now();
     const Result result = solve(own, cell.solver, start, options);
     if (result.termination == Termination::Interrupted && !result.usable()) return;  // as good as not begun
@@ -125,8 +127,8 @@ void CellList::add(const CellPlan& plan, std::size_t problem, std::vector<std::s
         "or several calls, each with its --seed",
         plan.repeat, kMostRuns));
   if (!once.empty())
-    notes.push_back(fmt::format("{}: deterministic, so run once from the nominal start instead of {} times",
-                                once, plan.repeat));
+    notes.push_back(fmt::format("{}: deterministic, so run once from the {} start instead of {} times", once,
+                                plan.start_name.empty() ? "nominal" : plan.start_name, plan.repeat));
 }
 
 RunCell CellList::operator[](std::size_t index) const {
@@ -143,6 +145,8 @@ RunCell CellList::operator[](std::size_t index) const {
   cell.seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, cell.solver.text(), number});
   cell.start_seed = derive_seed(plan.base_seed, {plan.problem, plan.dataset, "start", number});
   cell.random_start = plan.random_start;
+  cell.start_name = plan.start_name;
+  cell.start = plan.start;
   cell.draws_random_numbers = catalogue_->solver(cell.solver.name).stochastic ||
                               (!cell.polish.name.empty() && catalogue_->solver(cell.polish.name).stochastic);
   return cell;

@@ -19,6 +19,8 @@ struct RunCell {
   std::uint64_t seed = 0;
   std::uint64_t start_seed = 0;  // of a random start
   bool random_start = false;
+  std::string start_name;  // of another start than the nominal one: "censi"
+  Vector start;            // that one, in parameter units; empty: the problem's own
 
   bool draws_random_numbers = false;  // its solver or its polish; a random start apart
 
@@ -31,6 +33,8 @@ struct CellPlan {
   int repeat = 1;
   std::uint64_t base_seed = 1;
   bool random_start = false;
+  std::string start_name;  // as of RunCell
+  Vector start;
   std::string problem, dataset;  // names the seeds are derived from
 };
 
@@ -51,9 +55,9 @@ class CellList {
 
   // One cell per solver and repetition, solver by solver. Seeds: derive_seed(base, {problem, data set,
   // solver, repetition}); random starts: derive_seed(base, {problem, data set, "start", repetition}), the
-  // same for every solver. A deterministic solver from the nominal start gives the same answer each time: it
-  // gets one cell, and `notes` a line. A polish applies to every solver but itself. `problem`: as of RunCell.
-  // Throws std::invalid_argument when there are more than kMostRuns.
+  // same for every solver. A deterministic solver from a start that is always the same gives the same
+  // answer each time: it gets one cell, and `notes` a line. A polish applies to every solver but itself.
+  // `problem`: as of RunCell. Throws std::invalid_argument when there are more than kMostRuns.
   void add(const CellPlan& plan, std::size_t problem, std::vector<std::string>& notes);
 
   std::size_t size() const { return size_; }

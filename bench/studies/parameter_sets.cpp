@@ -58,21 +58,6 @@ std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters
   return sets;
 }
 
-void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher) {
-  std::string list;
-  const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const double value = set.values[static_cast<Eigen::Index>(i)];
-    // Published values are rounded: 26.67 mm is one unit in the last place above 1.05 * 25.4 mm.
-    const double slack = 1e-9 * (parameters[i].upper - parameters[i].lower);
-    if (value < parameters[i].lower - slack || value > parameters[i].upper + slack)
-      list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
-                          parameters[i].lower, parameters[i].upper);
-  }
-  if (!list.empty())
-    watcher.warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
-}
-
 }  // namespace
 
 std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
@@ -112,6 +97,21 @@ std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std
   throw std::invalid_argument(
       fmt::format("--parameters={}: neither a file nor a name this data set knows{}; known: {}", source,
                   did_you_mean(source, known), list));
+}
+
+void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher) {
+  std::string list;
+  const std::vector<ParameterInfo>& parameters = loaded.problem.parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = set.values[static_cast<Eigen::Index>(i)];
+    // Published values are rounded: 26.67 mm is one unit in the last place above 1.05 * 25.4 mm.
+    const double slack = 1e-9 * (parameters[i].upper - parameters[i].lower);
+    if (value < parameters[i].lower - slack || value > parameters[i].upper + slack)
+      list += fmt::format("{}{}={} ({}..{})", list.empty() ? "" : ", ", parameters[i].name, value,
+                          parameters[i].lower, parameters[i].upper);
+  }
+  if (!list.empty())
+    watcher.warn(fmt::format("parameters '{}' lie outside the box of the set: {}", set.label, list));
 }
 
 void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets) {

@@ -28,6 +28,9 @@ ParameterNames parameter_names(const LoadedProblem& loaded);
 // file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
 std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source);
 
+// Warns where the set's parameters lie outside the box.
+void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher);
+
 // Throws std::invalid_argument when there is one of this label already.
 void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets);
 

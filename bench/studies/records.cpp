@@ -11,8 +11,10 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "bench/studies/context.hpp"
+#include "problems/calibration/drive_errors.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "problems/information/identifiability.hpp"
+#include "reports/kinds/calibration/drive_tables.hpp"
 
 namespace odobench {
 namespace {
@@ -36,11 +38,39 @@ std::vector<ParameterValue> parameter_values(const std::vector<ParameterInfo>& p
   return values;
 }
 
+std::vector<PoseTrack> tracks_of(const CalibrationProblem& problem, const Vector& z) {
+  std::vector<PoseTrack> tracks;
+  for (std::size_t i = 0; i < problem.recordings().size(); ++i) tracks.push_back(problem.integrate(i, z));
+  return tracks;
+}
+
+// Figures of each drive, for robots other than the thesis', whose tables know x and y apart.
+void describe_drives(const LoadedProblem& loaded, const std::vector<PoseTrack>& tracks, RunRecord& record) {
+  const CalibrationProblem& problem = *loaded.calibration;
+  if (problem.structured()) return;
+  Vector nominal(static_cast<Eigen::Index>(problem.parameters().size()));
+  for (std::size_t i = 0; i < problem.parameters().size(); ++i)
+    nominal[static_cast<Eigen::Index>(i)] = problem.parameters()[i].nominal;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const DriveErrors e = drive_errors(problem.recordings()[i], tracks[i]);
+    const double figures[] = {e.max_position,
+                              e.max_heading,
+                              e.end_position,
+                              e.end_heading,
+                              e.end[0],
+                              e.end[1],
+                              static_cast<double>(sense_of(problem.integrate(i, nominal)))};
+    for (std::size_t k = 0; k < kDriveSeries.size(); ++k)
+      record.series[kDriveSeries[k]].push_back(figures[k]);
+  }
+}
+
 void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
   record.parameters = parameter_values(loaded.problem.parameters(), x);
   if (!loaded.calibration) return;
   for (const MaxErrors& e : loaded.calibration->max_errors(x))
     record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+  if (!loaded.calibration->structured()) describe_drives(loaded, tracks_of(*loaded.calibration, x), record);
 }
 
 std::map<std::string, double> budget_figures(const Budget& budget) {
@@ -117,7 +147,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.seed = cell.seed;
   record.base_seed = base_seed;
   record.repetition = cell.repetition;
-  record.start = cell.random_start ? "random" : "nominal";
+  record.start = cell.random_start ? "random" : cell.start_name.empty() ? "nominal" : cell.start_name;
   record.random = cell.draws_random_numbers;
   record.budget = budget_figures(budget);
   record.termination = to_string(result.termination);
@@ -131,7 +161,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
     if (loaded.calibration) {
       const std::string what = fmt::format("{}, at the result of {}", record.dataset, record.label);
       const Identifiability id = identifiability(loaded.problem, result.x);
-      if (!id.parameters.empty()) record.series = identifiability_series(id);
+      if (!id.parameters.empty()) record.series.merge(identifiability_series(id));
       const std::string note = identifiability_note(loaded.problem, id, what);
       if (!note.empty()) record.notes.push_back(note);
     }
@@ -172,6 +202,31 @@ RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& labe
   record.cost = own.cost(parameters);
   record.evaluations = record.cost_evaluations = own.counts().total();
   describe_point(loaded, parameters, record);
+  return record;
+}
+
+RunRecord tracks_record(const LoadedProblem& loaded, const std::string& label,
+                        const std::vector<PoseTrack>& tracks, const RunContext& context) {
+  RunRecord record = empty_record(loaded, context, utc_now());
+  record.label = label;
+  record.kind = "evaluation";
+  record.termination = "evaluated";
+  record.cost = cost_of_tracks(*loaded.calibration, tracks);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const MaxErrors e = max_errors(loaded.calibration->recordings()[i], tracks[i]);
+    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+  }
+  describe_drives(loaded, tracks, record);
+  return record;
+}
+
+RunRecord skipped_record(const LoadedProblem& loaded, const std::string& label, const std::string& reason,
+                         const RunContext& context) {
+  RunRecord record = empty_record(loaded, context, utc_now());
+  record.label = label;
+  record.kind = "skipped";
+  record.termination = to_string(Termination::NotApplicable);
+  record.message = reason;
   return record;
 }
 

@@ -23,6 +23,15 @@ std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
 RunRecord evaluation_record(const LoadedProblem& loaded, const std::string& label, const Vector& parameters,
                             const RunContext& context);
 
+// J and errors of poses that no parameters give, one track per recording of a calibration in the general
+// form.
+RunRecord tracks_record(const LoadedProblem& loaded, const std::string& label,
+                        const std::vector<PoseTrack>& tracks, const RunContext& context);
+
+// A row that says why there is nothing: kind "skipped".
+RunRecord skipped_record(const LoadedProblem& loaded, const std::string& label, const std::string& reason,
+                         const RunContext& context);
+
 // What a study says that has no cost interface of its own: label, parameters `values` of `parameters`; the
 // caller adds errors, measures and series. Kind "evaluation".
 RunRecord study_record(const std::string& problem, const std::string& dataset, const std::string& label,

@@ -54,6 +54,21 @@ void add_calibration(CLI::App& app, CalibrationChoice& choice) {
       "the tracked frame's place and yaw on the robot are unknowns, too; judge them on other drives");
 }
 
+void add_classical(CLI::App& app, ClassicalChoice& choice) {
+  add_value(app, "--classical", "[=LIST]",
+            "rows of classical calibrations beside the others: umbmark, jung_chung, censi, ...; 'all' for "
+            "every one "
+            "[those made for the robot's class]",
+            [&choice](const std::string& text) {
+              choice.wanted = true;
+              // Without a value, and in configuration files.
+              if (!text.empty() && text != "true" && text != "{}") choice.names.push_back(text);
+            })
+      ->expected(0, 1);
+  add_value(app, "--side", "M", "side of the squares of classical methods, in m [a quarter of the path]",
+            [&choice](const std::string& text) { choice.side = finite_number("--side", text, true); });
+}
+
 void add_budget(CLI::App& app, Budget& budget) {
   add_value(app, "--max-evals", "N",
             fmt::format("evaluations (costs and derivatives) of a run at most; 'none' lifts the limit [{}]",

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/calibration/classical_study.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/run.hpp"
 
@@ -25,6 +26,8 @@ inline constexpr const char* kNamedOnly = "no result of this verb depends on it"
 void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark);
 // --cost, --integration, --twist, --weights, --distance, --mount of a calibration.
 void add_calibration(CLI::App& app, CalibrationChoice& choice);
+// --classical, --side.
+void add_classical(CLI::App& app, ClassicalChoice& choice);
 // --max-evals, --time-limit, --target.
 void add_budget(CLI::App& app, Budget& budget);
 

@@ -28,7 +28,8 @@ void add_options(CLI::App& app, EvaluateOptions& o) {
          "--parameters", o.study.parameters,
          "JSON files ({\"a1\": 0.1125, ...} in metres and radians, or an array of such), 'nominal', or names "
          "the set knows "
-         "such as published:lm, truth; a comma list, may be given again [nominal]")
+         "such as published:lm, truth, or the folder of a run (best run of each row; DIR:ROW for one); a "
+         "comma list, may be given again [nominal]")
       ->type_name("LIST")
       ->allow_extra_args(false);
   app.add_option(
@@ -36,6 +37,7 @@ void add_options(CLI::App& app, EvaluateOptions& o) {
          "write the paths that the parameters give as CSV, for plots; - for standard output, without tables")
       ->type_name("FILE.CSV");
   add_calibration(app, o.study.calibration);
+  add_classical(app, o.study.classical);
   add_kernel(app, o.study.kernel, kLastBits);
   app.add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
   app.add_flag("--overwrite", o.overwrite, "replace what --tracks or --out find there");

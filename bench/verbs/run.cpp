@@ -22,6 +22,7 @@ constexpr const char* kRunExamples = R"(Examples:
   bench --solver=lm --data=set.json
   bench --solver=pso,cmaes --repeat=20 --seed=7 --max-evals=30000 --out=results --format=md
   bench --solver=lm,ip --start=random --repeat=20
+  bench --solver=lm --data=diff.json --cost=segments --classical --start=censi
   bench --config=experiment.json --threads=1
 A configuration file holds these options without dashes: {"solver": ["lm", "pso[swarm=60]"], "repeat": 10}
 Every method also ends by itself; 'bench list solvers' shows its options.)";
@@ -58,12 +59,14 @@ void add_options(CLI::App& app, RunOptions& options) {
   add_threads(app, options.study.threads);
   add_kernel(app, options.study.kernel, kLastBits);
   add_budget(app, options.study.budget);
-  add_value(app, "--start", "nominal|random",
-            "where runs begin; random starts are shared by all solvers [nominal]",
+  add_classical(app, options.study.classical);
+  add_value(app, "--start", "nominal|random|METHOD",
+            "where runs begin; random starts are shared by all solvers; the result of a classical method of "
+            "the robot, e.g. censi [nominal]",
             [&options](const std::string& text) {
-              if (text != "nominal" && text != "random")
-                throw std::invalid_argument(fmt::format("--start={}: expected nominal or random", text));
+              require_start(text);
               options.study.random_start = text == "random";
+              options.study.start_method = text == "nominal" || text == "random" ? "" : text;
             });
   app.add_flag("--check-derivatives", options.study.check_derivatives,
                "before the run, compare Jacobian and gradient with differences at the start and at three "
@@ -90,7 +93,7 @@ bool any_result(const std::vector<RunRecord>& records) {
 ExitCode outcome(const RunOptions& options, const SolverRuns& runs) {
   std::size_t made = 0, stopped = 0;
   for (const RunRecord& r : runs.records) {
-    if (r.kind == "evaluation") continue;
+    if (r.solver.empty()) continue;  // evaluated, or a classical method that does not apply
     ++made;
     if (r.termination == to_string(Termination::Interrupted)) ++stopped;
   }

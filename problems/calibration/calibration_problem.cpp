@@ -199,24 +199,25 @@ void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorR
   }
 }
 
+MaxErrors max_errors(const Recording& recording, const PoseTrack& q) {
+  const Reference& reference = recording.reference;
+  MaxErrors e{recording.id, recording.trajectory, recording.repetition};
+  for (std::size_t entry = 0; entry < reference.x.size(); ++entry) {
+    const bool everywhere = reference.sample.empty();
+    const std::size_t k = everywhere ? entry : reference.sample[entry];
+    const double turned = q.theta[k] - reference.theta[entry];
+    e.x = std::max(e.x, std::abs(q.x[k] - reference.x[entry]));
+    e.y = std::max(e.y, std::abs(q.y[k] - reference.y[entry]));
+    // Headings here and there are known up to turns.
+    e.theta = std::max(e.theta, std::abs(everywhere ? turned : wrapped_angle(turned)));
+  }
+  return e;
+}
+
 std::vector<MaxErrors> CalibrationProblem::max_errors(const ConstVectorRef& z) const {
   std::vector<MaxErrors> list;
-  for (std::size_t i = 0; i < recordings_.size(); ++i) {
-    const Recording& recording = recordings_[i];
-    const Reference& reference = recording.reference;
-    const PoseTrack q = integrate(i, z);
-    MaxErrors e{recording.id, recording.trajectory, recording.repetition};
-    for (std::size_t entry = 0; entry < reference.x.size(); ++entry) {
-      const bool everywhere = reference.sample.empty();
-      const std::size_t k = everywhere ? entry : reference.sample[entry];
-      const double turned = q.theta[k] - reference.theta[entry];
-      e.x = std::max(e.x, std::abs(q.x[k] - reference.x[entry]));
-      e.y = std::max(e.y, std::abs(q.y[k] - reference.y[entry]));
-      // Headings here and there are known up to turns.
-      e.theta = std::max(e.theta, std::abs(everywhere ? turned : wrapped_angle(turned)));
-    }
-    list.push_back(std::move(e));
-  }
+  for (std::size_t i = 0; i < recordings_.size(); ++i)
+    list.push_back(odobench::max_errors(recordings_[i], integrate(i, z)));
   return list;
 }
 

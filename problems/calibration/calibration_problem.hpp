@@ -40,6 +40,8 @@ struct MaxErrors {
   double x = 0, y = 0, theta = 0;
 };
 
+MaxErrors max_errors(const Recording& recording, const PoseTrack& track);
+
 namespace direct {
 // The equations as written, sample by sample: the reference for tests and benchmarks.
 PoseTrack integrate(const Recording& recording, const ConstVectorRef& z);

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "problems/calibration/calibration_problem.hpp"
+#include "problems/calibration/classical/classical.hpp"
+#include "problems/calibration/drive_errors.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/optiodom.hpp"
 
@@ -171,17 +173,11 @@ struct Maxima {
 Maxima maxima_of(const CalibrationProblem& problem, const Vector& z) {
   Maxima m;
   for (std::size_t i = 0; i < problem.recordings().size(); ++i) {
-    const Reference& truth = problem.recordings()[i].reference;
-    const PoseTrack track = problem.integrate(i, z);
-    for (std::size_t k = 0; k < track.x.size(); ++k) {
-      const double position = std::hypot(track.x[k] - truth.x[k], track.y[k] - truth.y[k]),
-                   heading = std::abs(track.theta[k] - truth.theta[k]) / kDegree;
-      m.position = std::max(m.position, position);
-      m.heading = std::max(m.heading, heading);
-      if (k + 1 < track.x.size()) continue;
-      m.final_position = std::max(m.final_position, position);
-      m.final_heading = std::max(m.final_heading, heading);
-    }
+    const DriveErrors e = drive_errors(problem.recordings()[i], problem.integrate(i, z));
+    m.position = std::max(m.position, e.max_position);
+    m.heading = std::max(m.heading, e.max_heading / kDegree);
+    m.final_position = std::max(m.final_position, e.end_position);
+    m.final_heading = std::max(m.final_heading, e.end_heading / kDegree);
   }
   return m;
 }
@@ -212,6 +208,87 @@ TEST(OptiodomReference, LargestErrors) {
     if (is_omni(type))
       expect_table(maxima_of(exact, our_parameters(type, cases[0].second)),
                    set.at("tables").at("nominal_exact_arc"), folder + " exact arc");
+  }
+}
+
+// UMBmark's measure from the end errors, before and after.
+TEST(OptiodomReference, CentresOfEndErrors) {
+  ODOBENCH_NEEDS_OPTIODOM();
+  int sets = 0;
+  for (const auto& [folder, set] : optiodom_reference().items()) {
+    if (!set.contains("umbmark_measure")) continue;
+    ++sets;
+    const Dataset& data = optiodom_set(folder);
+    const CalibrationProblem problem(data.robot, data.recordings, options_of("diff", "optiodom"));
+    const Vector nominal = our_parameters("diff", vector_of_json(set.at("nominal")));
+    for (const auto& [name, expected] : set.at("umbmark_measure").items()) {
+      const json& z =
+          name == "nominal" ? set.at("nominal") : set.at("problems").at("optiodom").at("optimum").at("z");
+      Eigen::Vector3d sums[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+      double drives[2] = {0, 0};
+      for (std::size_t i = 0; i < data.recordings.size(); ++i) {
+        const int sense = sense_of(problem.integrate(i, nominal));
+        ASSERT_NE(sense, 0) << folder;
+        EXPECT_EQ(sense, i < data.recordings.size() / 2 ? -1 : 1) << folder << " run " << i;
+        const PoseTrack track = problem.integrate(i, our_parameters("diff", vector_of_json(z)));
+        sums[sense > 0 ? 1 : 0] += drive_errors(problem.recordings()[i], track).end;
+        ++drives[sense > 0 ? 1 : 0];
+      }
+      const double cw = (sums[0] / drives[0]).head<2>().norm(), ccw = (sums[1] / drives[1]).head<2>().norm();
+      EXPECT_NEAR(cw, expected.at("r_cw").get<double>(), 1e-9) << folder << " " << name;
+      EXPECT_NEAR(ccw, expected.at("r_ccw").get<double>(), 1e-9) << folder << " " << name;
+      EXPECT_NEAR(std::max(cw, ccw), expected.at("E_max_syst").get<double>(), 1e-9) << folder << " " << name;
+    }
+  }
+  EXPECT_EQ(sets, 2);
+}
+
+// Lin's matrix as poses: the published cells, and J as the general form has it of the same poses.
+TEST(OptiodomReference, PosesOfLinsMatrix) {
+  ODOBENCH_NEEDS_OPTIODOM();
+  int sets = 0;
+  for (const auto& [folder, set] : optiodom_reference().items()) {
+    if (!set.at("classical").contains("lin")) continue;
+    ++sets;
+    const Dataset& data = optiodom_set(folder);
+    const classical::Result lin = classical::method("lin").run(data.robot, data.recordings, {});
+    const std::vector<Matrix> tracks =
+        classical::tracks_by_matrix(lin.matrix, data.robot, data.recordings, IntegrationRule::OptiodomOmni);
+    Maxima m;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const auto row = [&](Eigen::Index r) {
+        const Vector values = tracks[i].row(r).transpose();
+        return std::vector<double>(values.begin(), values.end());
+      };
+      const DriveErrors e = drive_errors(data.recordings[i], {row(0), row(1), row(2)});
+      m.position = std::max(m.position, e.max_position);
+      m.heading = std::max(m.heading, e.max_heading / kDegree);
+      m.final_position = std::max(m.final_position, e.end_position);
+      m.final_heading = std::max(m.final_heading, e.end_heading / kDegree);
+    }
+    expect_table(m, set.at("classical").at("lin").at("table"), folder + " lin");
+  }
+  EXPECT_EQ(sets, 7);
+}
+
+// J of poses is J of the parameters that they are made of, for every cost.
+TEST(OptiodomReference, CostOfTracks) {
+  ODOBENCH_NEEDS_OPTIODOM();
+  for (const std::string folder : {"diff/free/030120210006", "omni3/joystick/221220202228"}) {
+    const std::string type = folder.substr(0, folder.find('/'));
+    const Dataset& data = optiodom_set(folder);
+    for (const std::string cost : {"every_sample", "final_pose", "segments", "optiodom"}) {
+      CalibrationOptions options = options_of(type, cost);
+      options.position_weight = 3;
+      options.heading_weight = 0.25;
+      const CalibrationProblem problem(data.robot, data.recordings, options);
+      const Vector z =
+          1.02 * our_parameters(type, vector_of_json(optiodom_reference().at(folder).at("nominal")));
+      std::vector<PoseTrack> tracks;
+      for (std::size_t i = 0; i < data.recordings.size(); ++i) tracks.push_back(problem.integrate(i, z));
+      EXPECT_NEAR(cost_of_tracks(problem, tracks), problem.cost(z), 1e-10 * problem.cost(z))
+          << folder << " " << cost;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/records.hpp"
 
@@ -28,12 +29,17 @@ Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, c
   const InstructionSet kernel = kernel_in_force(study.kernel);
   Evaluation evaluation{load_calibration(study.data, kernel, study.calibration), {}, {}};
   for (const std::string& remark : evaluation.loaded.remarks) watcher.warn(remark);
-  evaluation.sets = read_parameter_list(evaluation.loaded, study.parameters, watcher);
+  evaluation.sets = read_judged_parameters(evaluation.loaded, study.parameters, watcher);
   const RunContext context = run_context(1, kernel);
   for (const ParameterSet& set : evaluation.sets) {
     stop.check();
     evaluation.records.push_back(evaluation_record(evaluation.loaded, set.label, set.values, context));
     require_finite(evaluation.records.back());
+  }
+  for (RunRecord& record :
+       classical_records(evaluation.loaded, study.classical, context, &evaluation.sets, watcher)) {
+    if (record.kind == "evaluation") require_finite(record);
+    evaluation.records.push_back(std::move(record));
   }
   return evaluation;
 }

@@ -7,6 +7,7 @@
 
 #include "base/stop.hpp"
 #include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/calibration/classical_study.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/watcher.hpp"
 #include "reports/records/record.hpp"
@@ -16,14 +17,15 @@ namespace odobench {
 struct EvaluationStudy {
   std::string data;  // path of set.json; empty: the demo set
   CalibrationChoice calibration;
-  std::vector<std::string> parameters;  // files or names, as of read_parameter_list()
+  std::vector<std::string> parameters;  // files, names or run directories, as of read_judged_parameters()
+  ClassicalChoice classical;            // methods that are evaluated behind them
   std::optional<InstructionSet> kernel;
 };
 
 struct Evaluation {
   LoadedProblem loaded;
   std::vector<ParameterSet> sets;
-  std::vector<RunRecord> records;  // one per set
+  std::vector<RunRecord> records;  // one per set and classical method
 };
 
 // Throws std::invalid_argument on parameters that are none, DataError on a bad set and where J or an error

@@ -45,17 +45,34 @@ std::vector<LoadedProblem> load_problems(const SolverStudy& study, const Catalog
         {study.dimension, takes_data(name) ? study.data : "", study.calibration, kernel}));
   for (const LoadedProblem& one : loaded)
     for (const std::string& remark : one.remarks) notes.push_back(remark);
+  const bool calibrates = std::any_of(loaded.begin(), loaded.end(),
+                                      [](const LoadedProblem& one) { return one.calibration != nullptr; });
+  if (study.classical.wanted && !calibrates)
+    throw std::invalid_argument(
+        fmt::format("--classical: the problem '{}' is no calibration", loaded.front().name()));
   return loaded;
 }
 
+// What is compared with the runs: the nominal parameters, and the classical methods that are asked for.
+void add_evaluations(const SolverStudy& study, const LoadedProblem& loaded, const RunContext& context,
+                     Watcher& watcher, std::vector<RunRecord>& records) {
+  records.push_back(evaluation_record(loaded, "nominal", loaded.problem.start(), context));
+  for (RunRecord& record : classical_records(loaded, study.classical, context, nullptr, watcher))
+    records.push_back(std::move(record));
+}
+
 // The cells of every problem, problem by problem. Remarks are the same for all.
-CellList plan_all(CellPlan plan, const Catalogue& catalogue, const std::vector<LoadedProblem>& loaded,
-                  std::vector<std::string>& notes) {
+CellList plan_all(CellPlan plan, const SolverStudy& study, const Catalogue& catalogue,
+                  const std::vector<LoadedProblem>& loaded, std::vector<std::string>& notes) {
   CellList cells(catalogue);
   std::vector<std::string> repeated;
   for (std::size_t k = 0; k < loaded.size(); ++k) {
     plan.problem = loaded[k].name();
     plan.dataset = loaded[k].dataset_name();
+    if (!study.start_method.empty()) {
+      plan.start_name = study.start_method;
+      plan.start = classical_start(loaded[k], study.start_method, study.classical, notes);
+    }
     cells.add(plan, k, k == 0 ? notes : repeated);
   }
   return cells;
@@ -113,7 +130,7 @@ SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, Run
   const CellPlan plan = make_plan(study, catalogue, notes);
   const InstructionSet kernel = kernel_in_force(study.kernel);
   const std::vector<LoadedProblem> loaded = load_problems(study, catalogue, kernel, notes);
-  const CellList cells = plan_all(plan, catalogue, loaded, notes);
+  const CellList cells = plan_all(plan, study, catalogue, loaded, notes);
   const RunContext context = run_context(thread_count(study.threads), kernel);
   folder.require_free();
   for (const std::string& text : notes) watcher.note(text);
@@ -125,8 +142,7 @@ SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, Run
     if (!runs.derivatives->agrees) return runs;
   }
   for (const LoadedProblem& one : loaded)
-    if (one.calibration)
-      runs.records.push_back(evaluation_record(one, "nominal", one.problem.start(), context));
+    if (one.calibration) add_evaluations(study, one, context, watcher, runs.records);
   watcher.results_begin();
   folder.open();
   for (const RunRecord& record : runs.records) folder.append(record);

@@ -55,6 +55,12 @@ struct Method {
   std::function<Result(const Robot&, const std::vector<Recording>&, const Options&)> run;
 };
 
+// Poses by a matrix of twists by wheel paths (Result::matrix), of every recording 3 x samples, from the first
+// reference as the problem's odometry is, integrated by `rule`. Throws std::invalid_argument for a matrix
+// that does not fit the robot's wheels.
+std::vector<Matrix> tracks_by_matrix(const Matrix& matrix, const Robot& robot,
+                                     const std::vector<Recording>& recordings, robots::IntegrationRule rule);
+
 // In the order of the documentation. A new method is a row in classical.cpp.
 const std::vector<Method>& methods();
 // Throws std::invalid_argument for an unknown name, with the nearest one.

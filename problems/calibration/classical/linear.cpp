@@ -166,6 +166,29 @@ Result lin(const Drives& drives) {
   return result;
 }
 
+std::vector<Matrix> tracks_by_matrix(const Matrix& matrix, const Robot& robot,
+                                     const std::vector<Recording>& recordings, robots::IntegrationRule rule) {
+  const Drives drives(robot, recordings, {});
+  std::vector<Matrix> tracks;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const Drive& drive = drives.list()[i];
+    if (matrix.rows() != 3 || matrix.cols() != drive.signals.rows())
+      throw std::invalid_argument(fmt::format("a matrix of {} x {}, expected 3 x {}", matrix.rows(),
+                                              matrix.cols(), drive.signals.rows()));
+    Vector radii(matrix.cols());
+    for (Index w = 0; w < radii.size(); ++w) radii[w] = drives.nominal(fmt::format("r{}", w + 1));
+    const Reference& reference = recordings[i].reference;
+    const bool at_start = reference.sample.empty() || reference.sample[0] == 0;
+    const Eigen::Vector3d start = at_start
+                                      ? Eigen::Vector3d(reference.x[0], reference.y[0], reference.theta[0])
+                                      : Eigen::Vector3d::Zero();
+    Matrix poses(3, drive.signals.cols() + 1);
+    robots::integrate(rule, matrix * radii.asDiagonal() * drive.signals, start, poses, drive.seconds);
+    tracks.push_back(std::move(poses));
+  }
+  return tracks;
+}
+
 Result antonelli(const Drives& drives) {
   const Vector c = heading_coefficients(drives, Vector::Ones(2));
   const Vector a = position_coefficients(drives, 2, [&](const Drive& drive) {

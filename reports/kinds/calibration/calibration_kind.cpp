@@ -9,6 +9,7 @@
 
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
+#include "reports/kinds/calibration/drive_tables.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
@@ -69,7 +70,7 @@ void summarise(const std::vector<Comparison>& comparisons, Section& summary) {
   }
 }
 
-Section errors(const std::vector<Comparison>& comparisons) {
+Section errors(const std::vector<Comparison>& comparisons, Document& document) {
   Section section{
       "errors",
       "Errors",
@@ -81,6 +82,8 @@ Section errors(const std::vector<Comparison>& comparisons) {
       append_if(error_overview(c), section);
     else
       append(error_tables(c), section);
+    append(drive_tables(c), section);
+    add_end_figure(c, prefix_of(c), section, document);
   }
   return section;
 }
@@ -111,7 +114,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
 void add_calibration_page(const KindInput& input, Section& summary, Document& document) {
   const std::vector<Comparison> comparisons = compare(input.records);
   summarise(comparisons, summary);
-  finish(errors(comparisons), document);
+  finish(errors(comparisons, document), document);
   Section trajectories{"trajectories",
                        "Trajectories",
                        "Where the robot was, and where odometry says it was with each result's parameters.",

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "reports/kinds/calibration/drive_tables.hpp"
 #include "reports/kinds/calibration/summary_tables.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/statistics/row_groups.hpp"
@@ -32,6 +33,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
   std::vector<Table> tables;
   for (const Comparison& comparison : compare(records)) {
     for (Table& table : error_tables(comparison)) tables.push_back(std::move(table));
+    for (Table& table : drive_tables(comparison)) tables.push_back(std::move(table));
     Table solvers = solver_table(comparison);
     append_parameters(tables, comparison, solvers, notes);
     append(tables, totals_table(comparison));
@@ -52,6 +54,7 @@ std::vector<Table> evaluation_tables(const std::vector<RunRecord>& records,
       append(rest, error_overview(comparison));
     else
       rest = error_tables(comparison);
+    for (Table& table : drive_tables(comparison)) rest.push_back(std::move(table));
     append_parameters(rest, comparison, cost, notes);
     append(rest, totals_table(comparison));
     tables.push_back(std::move(cost));

@@ -20,6 +20,7 @@ namespace odobench {
 // Everything, in this order, tables without content left out:
 //   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in
 //                      brackets
+//   maxima, drives, ends  in the plane (reports/kinds/calibration/drive_tables.hpp)
 //   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows
 //                      first
 //   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %

@@ -201,11 +201,15 @@ Table cost_table(const Comparison& comparison) {
   const GapReference gap(comparison);
   table.columns = cost_columns(gap);
   table.columns.push_back(text_column("active_bounds"));
+  const bool skipped = std::any_of(comparison.rows.begin(), comparison.rows.end(),
+                                   [](const ComparisonRow& row) { return row.kind == "skipped"; });
+  if (skipped) table.columns.push_back(text_column("message", "skipped because"));
   for (const ComparisonRow& row : comparison.rows) {
     add_reference(table, row);
     table.rows.push_back({text_cell(row.label), with_noise(cost_cell(row.shown->cost), cost_noise(row)),
                           ratio_to_nominal(comparison, *row.shown), gap.cell(row),
                           text_cell(active_bounds(*row.shown))});
+    if (skipped) table.rows.back().push_back(text_cell(row.kind == "skipped" ? row.shown->message : ""));
   }
   if (comparison.rows.size() > 1) table.notes.push_back(gap.note());
   return table;
