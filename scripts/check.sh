@@ -35,6 +35,7 @@ datasets/entropy              datasets/csv
 datasets/native               datasets datasets/robots
 datasets/robots
 datasets/import               datasets datasets/csv
+datasets/import/csv           datasets datasets/csv datasets/native datasets/robots
 datasets/import/optiodom      datasets datasets/csv datasets/robots
 reports/records
 reports/statistics            reports/records

@@ -22,6 +22,7 @@ struct Unit {
 };
 constexpr std::array<Unit, 4> kSpeeds = {
     {{"rad/s", 1}, {"rpm", kPi / 30}, {"deg/s", kDegree}, {"turn/s", 2 * kPi}}};
+constexpr std::array<Unit, 3> kLengths = {{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}}};
 constexpr std::array<Unit, 3> kAngles = {{{"rad", 1}, {"deg", kDegree}, {"turn", 2 * kPi}}};
 
 template <class Units>
@@ -40,10 +41,9 @@ double positive(const JsonNode& node) {
 }
 
 double unit_scale(const JsonNode& node, const SignalFormat& format) {
-  if (format.kind == Kind::Travel) {
-    if (format.unit != "m") node.at("unit").fail('"' + shown(format.unit) + '"', "\"m\"");
-    return 1 / positive(node.at("radius"));
-  }
+  if (format.kind == Kind::Travel)
+    return scale_of(node.at("unit"), format.unit, kLengths, "\"m\", \"cm\" or \"mm\"") /
+           positive(node.at("radius"));
   if (format.kind == Kind::Speed)
     return scale_of(node.at("unit"), format.unit, kSpeeds, "\"rad/s\", \"rpm\", \"deg/s\" or \"turn/s\"");
   if (format.unit == "count") return 2 * kPi / positive(node.at("per_turn"));
@@ -61,16 +61,30 @@ bool SignalFormat::plain() const {
   return kind != Kind::Position && kind != Kind::Travel && scale == 1;
 }
 
-SignalFormat read_signal_format(const JsonNode& node) {
-  node.allow_only({"name", "kind", "unit", "per_turn", "bits", "sign", "radius"});
-  SignalFormat format;
-  format.name = node.at("name").text();
-  const std::string kind = node.at("kind").text();
+namespace {
+
+Kind kind_of(const JsonNode& node) {
+  const std::string kind = node.text();
   const auto found = std::find(kKinds.begin(), kKinds.end(), kind);
   if (found == kKinds.end())
-    node.at("kind").fail('"' + shown(kind) + '"',
-                         "\"speed\", \"increment\", \"angle\", \"position\" or \"travel\"");
-  format.kind = static_cast<Kind>(found - kKinds.begin());
+    node.fail('"' + shown(kind) + '"', "\"speed\", \"increment\", \"angle\", \"position\" or \"travel\"");
+  return static_cast<Kind>(found - kKinds.begin());
+}
+
+}  // namespace
+
+SignalFormat read_signal_format(const JsonNode& node) {
+  node.allow_only({"name", "kind", "unit", "per_turn", "bits", "sign", "radius"});
+  const std::string name = node.at("name").text();
+  SignalFormat format = read_signal_kind(node);
+  format.name = name;
+  return format;
+}
+
+SignalFormat read_signal_kind(const JsonNode& node, std::optional<Kind> otherwise) {
+  SignalFormat format;
+  format.kind = otherwise && !node.has("kind") ? *otherwise : kind_of(node.at("kind"));
+  const std::string kind(kKinds[static_cast<std::size_t>(format.kind)]);
   format.unit = node.at("unit").text();
   format.scale = unit_scale(node, format);
   if (node.has("per_turn") && format.unit != "count")

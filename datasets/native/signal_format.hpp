@@ -17,7 +17,7 @@ namespace odobench {
 // angle      rad, deg or turn of a steering sensor                                  angle
 // position   rad, deg, turn or count since some time: of a drive that only grows    increment
 //            or shrinks; counts of `bits` bits run over from 2^bits - 1 to 0
-// travel     m of the wheel's path since some time, at the radius `radius`          increment
+// travel     m, cm or mm of the wheel's path since some time, at the radius `radius`          increment
 // `per_turn`: counts of a turn of the wheel, or of the steering (motor counts times gear). `sign`: -1 where
 // the sensor counts backwards.
 struct SignalFormat {
@@ -35,6 +35,10 @@ struct SignalFormat {
 };
 
 SignalFormat read_signal_format(const JsonNode& node);
+// The same without a name, of a node that may have other keys beside; `otherwise`: its kind where it states
+// none.
+SignalFormat read_signal_kind(const JsonNode& node,
+                              std::optional<SignalFormat::Kind> otherwise = std::nullopt);
 SignalFormat format_of(const Signal& signal);
 
 // The first entry that a counter of so many bits, signed or not, cannot hold.

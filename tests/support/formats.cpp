@@ -127,6 +127,26 @@ std::vector<Words> read_optiodom(const std::string& metadata, const std::string&
            "--out=" + out(folder, "set.json"), "--overwrite", "--quiet"}};
 }
 
+const std::string kOwnMap = R"({"schema": "odobench-import", "schema_version": 1, "name": "mine",
+ "robot": {"name": "r", "kinematics": "differential", "parameters": [{"name": "b", "nominal": 0.3}, {"name": "r_left", "nominal": 0.05}]},
+ "time": {"column": "t_ms", "unit": "ms"},
+ "reference": {"x": {"column": "x_mm", "unit": "mm"}, "y": {"column": "y_mm", "unit": "mm"}, "theta": {"column": "yaw_deg", "unit": "deg"}},
+ "signals": {"wheel.left": {"column": "left", "unit": "count", "per_turn": 1000, "bits": 16, "sign": -1},
+             "wheel.right": {"column": "right", "kind": "position", "unit": "count", "per_turn": 1000}},
+ "trajectories": {"drive": {"trajectory": "bend", "repetition": 2}}})";
+const std::string kOwnCsv =
+    "t_ms,x_mm,y_mm,yaw_deg,left,right\n1760000000000.5,0,0,179.5,5,100\n1760000000050.5,12.5,0.25,-179,"
+    "65530,"
+    "112\n1760000000100.5,,,,65518,124\n1760000000150.5,37.5,1,-176.5,65506,136\n";
+
+std::vector<Words> read_own_csv(const std::string& map, const std::string& csv,
+                                const TemporaryFolder& folder) {
+  const std::string file = folder.file("drive.csv", csv);
+  return {{"import", "csv", "--from=" + file, "--map=" + folder.file("map.json", map),
+           "--out=" + out(folder, "set.json"), "--overwrite", "--quiet"},
+          {"import", "csv", "--from=" + file, "--propose"}};
+}
+
 // A run directory whose file `name` has these bytes.
 std::string run_directory(const std::string& name, const std::string& bytes, const TemporaryFolder& folder) {
   if (!fs::exists(folder / "run")) fs::copy(prepared() / "run", folder / "run", fs::copy_options::recursive);
@@ -233,6 +253,10 @@ std::vector<Format> make_formats() {
        [](Bytes b, Files f) -> Commands { return read_optiodom(b, kOptiodomRun, f); }},
       {"optiodom_run", [] { return std::vector<std::string>{kOptiodomRun}; },
        [](Bytes b, Files f) -> Commands { return read_optiodom(kOptiodomMetadata, b, f); }},
+      {"import_map", [] { return std::vector<std::string>{kOwnMap}; },
+       [](Bytes b, Files f) -> Commands { return read_own_csv(b, kOwnCsv, f); }},
+      {"own_csv", [] { return std::vector<std::string>{kOwnCsv}; },
+       [](Bytes b, Files f) -> Commands { return read_own_csv(kOwnMap, b, f); }},
       {"filter", [] { return std::vector<std::string>{CircleRun().data()}; },
        [](Bytes b, Files f) -> Commands { return read_filter(b, "", f); }},
       {"truth", [] { return std::vector<std::string>{CircleRun().truth()}; },

@@ -1,0 +1,128 @@
+#include "datasets/import/csv/column_name.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+#include <vector>
+
+namespace odobench::csv_import {
+namespace {
+
+using Words = std::vector<std::string>;
+
+// Letters, digits and what else a unit has, in lower case; words end where letters meet digits, too.
+Words words_of(std::string_view text) {
+  Words words;
+  bool new_word = true, digit = false;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u >= 0x80 || std::isalnum(u) == 0) {
+      new_word = true;
+      continue;
+    }
+    const bool is_digit = std::isdigit(u) != 0;
+    if (new_word || is_digit != digit) words.emplace_back();
+    words.back() += static_cast<char>(std::tolower(u));
+    new_word = false;
+    digit = is_digit;
+  }
+  return words;
+}
+
+bool has(const Words& words, std::initializer_list<std::string_view> known) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return std::find(known.begin(), known.end(), word) != known.end();
+  });
+}
+
+// The unit that the words end in, taken off.
+std::string take_unit(Words& words) {
+  static const std::vector<std::pair<Words, std::string>> units = {{{"rad", "s"}, "rad/s"},
+                                                                   {{"radps"}, "rad/s"},
+                                                                   {{"rads"}, "rad/s"},
+                                                                   {{"rad", "sec"}, "rad/s"},
+                                                                   {{"deg", "s"}, "deg/s"},
+                                                                   {{"degps"}, "deg/s"},
+                                                                   {{"turn", "s"}, "turn/s"},
+                                                                   {{"turns", "s"}, "turn/s"},
+                                                                   {{"rev", "s"}, "turn/s"},
+                                                                   {{"rps"}, "turn/s"},
+                                                                   {{"rpm"}, "rpm"},
+                                                                   {{"m", "s"}, "m/s"},
+                                                                   {{"rad"}, "rad"},
+                                                                   {{"deg"}, "deg"},
+                                                                   {{"degrees"}, "deg"},
+                                                                   {{"turn"}, "turn"},
+                                                                   {{"turns"}, "turn"},
+                                                                   {{"rev"}, "turn"},
+                                                                   {{"m"}, "m"},
+                                                                   {{"cm"}, "cm"},
+                                                                   {{"mm"}, "mm"},
+                                                                   {{"s"}, "s"},
+                                                                   {{"sec"}, "s"},
+                                                                   {{"secs"}, "s"},
+                                                                   {{"seconds"}, "s"},
+                                                                   {{"ms"}, "ms"},
+                                                                   {{"us"}, "us"},
+                                                                   {{"ns"}, "ns"},
+                                                                   {{"nsec"}, "ns"},
+                                                                   {{"count"}, "count"},
+                                                                   {{"counts"}, "count"},
+                                                                   {{"tick"}, "count"},
+                                                                   {{"ticks"}, "count"}};
+  for (const auto& [end, unit] : units) {
+    if (words.size() < end.size() || !std::equal(end.rbegin(), end.rend(), words.rbegin())) continue;
+    words.resize(words.size() - end.size());
+    return unit;
+  }
+  return "";
+}
+
+std::string number_of(const Words& words) {
+  for (const std::string& word : words)
+    if (word.size() == 1 && word[0] >= '1' && word[0] <= '9') return word;
+  return "";
+}
+
+// "left" of l, left, links; in sets the class' own names are left, right and numbers.
+std::string which_of(const Words& words) {
+  if (has(words, {"left", "l", "links", "lft"})) return "left";
+  if (has(words, {"right", "r", "rechts", "rgt"})) return "right";
+  return number_of(words);
+}
+
+Meaning meaning_of(const Words& words) {
+  const std::string last = words.empty() ? "" : words.back();
+  if (has(words, {"time", "stamp", "timestamp", "t"})) return Meaning::Time;
+  if (has(words, {"steer", "steering"})) return Meaning::Steering;
+  if (has(words, {"theta", "yaw", "heading", "psi"})) return Meaning::Heading;
+  if (last == "x" || last == "px") return Meaning::X;
+  if (last == "y" || last == "py") return Meaning::Y;
+  const bool wheel = has(words, {"wheel", "w", "enc", "encoder", "traction", "drive", "motor", "omega"});
+  if (wheel || !which_of(words).empty()) return Meaning::Wheel;
+  return Meaning::Unknown;
+}
+
+}  // namespace
+
+ColumnName column_name(std::string_view name) {
+  ColumnName column;
+  column.name = name;
+  Words words = words_of(name);
+  column.unit = take_unit(words);
+  if (words.empty() &&
+      (column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "ns"))
+    column.meaning = Meaning::Time;
+  else
+    column.meaning = meaning_of(words);
+  column.odometry = has(words, {"odom", "odo", "odometry", "est", "ekf"});
+  if (column.meaning == Meaning::Wheel || column.meaning == Meaning::Steering) {
+    column.which = which_of(words);
+    if (column.unit.empty() && has(words, {"enc", "encoder"})) column.unit = "count";
+    if (column.unit == "m/s") column.unit.clear();  // of the rim: no unit of the map
+  }
+  return column;
+}
+
+}  // namespace odobench::csv_import

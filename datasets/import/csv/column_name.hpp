@@ -1,0 +1,22 @@
+// What the name of a column says of it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace odobench::csv_import {
+
+enum class Meaning { Unknown, Time, X, Y, Heading, Wheel, Steering };
+
+struct ColumnName {
+  std::string name;
+  Meaning meaning = Meaning::Unknown;
+  std::string unit;       // as the map writes it: "rad/s", "deg", "mm", "ns", "count"; "" where it says none
+  std::string which;      // of a wheel: "left", "right", "1"; "" where there is one
+  bool odometry = false;  // a pose of the robot's own
+};
+
+// "left_rad_s", "wheel_speed.right [rpm]", "Time (ms)", "gt_x", "steer_1_deg".
+ColumnName column_name(std::string_view name);
+
+}  // namespace odobench::csv_import
