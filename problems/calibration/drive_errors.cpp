@@ -9,7 +9,7 @@
 namespace odobench {
 namespace {
 
-Eigen::Vector3d pose_at(const PoseTrack& track, std::size_t k) {
+Eigen::Vector3d track_pose(const PoseTrack& track, std::size_t k) {
   return {track.x[k], track.y[k], track.theta[k]};
 }
 
@@ -69,10 +69,10 @@ double cost_of_tracks(const CalibrationProblem& problem, const std::vector<PoseT
     const bool wrapped = !recording.reference.sample.empty();
     for (std::size_t r = 1; r < rows.size(); ++r) {
       const Eigen::Vector3d measured = reference_at(recording.reference, rows[r]);
-      const Eigen::Vector3d reckoned = pose_at(tracks[i], rows[r]);
+      const Eigen::Vector3d reckoned = track_pose(tracks[i], rows[r]);
       Eigen::Vector3d e = reckoned - measured;
       if (options.cost == CostKind::Segments)
-        e = seen_from(pose_at(tracks[i], rows[r - 1]), reckoned) -
+        e = seen_from(track_pose(tracks[i], rows[r - 1]), reckoned) -
             seen_from(reference_at(recording.reference, rows[r - 1]), measured);
       if (wrapped) e[2] = wrapped_angle(e[2]);
       cost += options.position_weight * e.head<2>().squaredNorm() + heading_weight * e[2] * e[2];

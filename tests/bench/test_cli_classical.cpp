@@ -226,6 +226,8 @@ TEST(CliClassical, PageShowsEndsOfBothSenses) {
   EXPECT_THAT(text, HasSubstr("Ends of drives in both senses"));
   EXPECT_THAT(text, HasSubstr("E_max,syst"));
   EXPECT_THAT(text, HasSubstr("s,sense,kind,x,y"));
+  EXPECT_THAT(text, HasSubstr("0,clockwise,centre,"));
+  EXPECT_THAT(text, HasSubstr("0,counter-clockwise,centre,"));
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ struct Finding {
   std::string reason;
 };
 
-Finding find(const classical::Method& method, const LoadedProblem& loaded, const ClassicalChoice& choice) {
+Finding calibrated_by(const classical::Method& method, const LoadedProblem& loaded,
+                      const ClassicalChoice& choice) {
   const Robot& robot = loaded.dataset->robot;
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
   const classical::Options options = classical_options(loaded, choice);
@@ -64,7 +65,7 @@ Vector problem_parameters(const LoadedProblem& loaded, const classical::Result& 
 }
 
 // Lower is better of what is left after the calibration; the others are intermediate values.
-void add_measures(const classical::Result& result, RunRecord& record) {
+void add_classical_measures(const classical::Result& result, RunRecord& record) {
   for (const classical::Figure& f : result.figures) {
     const bool after = f.name.size() > 6 && f.name.compare(f.name.size() - 6, 6, "_after") == 0;
     record.measures.put({f.name, f.value, f.unit == "1" ? "" : f.unit, after ? Better::Lower : Better::None});
@@ -137,7 +138,7 @@ std::vector<RunRecord> classical_records(const LoadedProblem& loaded, const Clas
   for (const std::string& name : classical_methods(choice, kinematics)) {
     const classical::Method& method = classical::method(name);
     const std::string label = "classical:" + name;
-    const Finding found = find(method, loaded, choice);
+    const Finding found = calibrated_by(method, loaded, choice);
     if (!found.reason.empty()) {
       records.push_back(skipped_record(loaded, label, found.reason, context));
       continue;
@@ -150,7 +151,7 @@ std::vector<RunRecord> classical_records(const LoadedProblem& loaded, const Clas
       records.push_back(matrix_record(loaded, label, found.result.matrix, context));
     }
     records.back().message = message_of(method, loaded, found.result);
-    add_measures(found.result, records.back());
+    add_classical_measures(found.result, records.back());
   }
   if (records.empty())
     watcher.note(fmt::format("--classical: no classical method is made for robots of class {}", kinematics));
@@ -162,7 +163,7 @@ Vector classical_start(const LoadedProblem& loaded, const std::string& name, con
   if (!loaded.calibration)
     throw std::invalid_argument(fmt::format(
         "--start={}: the problem '{}' is no calibration, expected nominal or random", name, loaded.name()));
-  const Finding found = find(classical::method(name), loaded, choice);
+  const Finding found = calibrated_by(classical::method(name), loaded, choice);
   std::string reason = found.reason;
   if (reason.empty() && found.result.z.size() == 0) reason = "it finds a matrix, no parameters to start from";
   if (!reason.empty()) throw DataError(fmt::format("{}: --start={}: {}", loaded.dataset_path, name, reason));

@@ -159,6 +159,58 @@ std::optional<std::array<Ends, 2>> ends_of(const RunRecord& record) {
   return ends;
 }
 
+// The end errors of all rows, and their chart with one scale for both axes, 0 among what is shown.
+struct EndPoints {
+  std::vector<std::string> labels;
+  std::string csv = "s,sense,kind,x,y\n";
+  std::array<double, 2> low{}, high{};
+
+  void add(const std::string& label, const std::array<Ends, 2>& ends) {
+    for (std::size_t sense = 0; sense < 2; ++sense) {
+      const Ends& e = ends[sense];
+      for (std::size_t i = 0; i < e.x.size(); ++i) add(sense, "drive", e.x[i], e.y[i]);
+      add(sense, "centre", e.mean(e.x), e.mean(e.y));
+    }
+    labels.push_back(label);
+  }
+
+  vega::json chart() const {
+    using vega::json;
+    constexpr double kSide = 440;  // px
+    const double span = 1.1 * std::max({high[0] - low[0], high[1] - low[1], 1e-9});
+    json axes[2] = {vega::quantitative("x", "end error x [m]"), vega::quantitative("y", "end error y [m]")};
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double middle = (low[c] + high[c]) / 2;
+      axes[c]["scale"] = {{"domain", {middle - span / 2, middle + span / 2}}, {"nice", false}};
+    }
+    const json encoding{{"x", axes[0]},
+                        {"y", axes[1]},
+                        {"color", vega::nominal("label", "", labels)},
+                        {"shape", vega::nominal("sense", "", {"clockwise", "counter-clockwise"})}};
+    const auto layer = [&](const char* kind, int size, double opacity) {
+      const json mark{
+          {"type", "point"}, {"filled", true}, {"size", size}, {"opacity", opacity}, {"tooltip", true}};
+      return json{{"transform", {vega::filter(fmt::format("datum.kind == '{}'", kind))}},
+                  {"mark", mark},
+                  {"encoding", encoding}};
+    };
+    return {{"width", kSide},
+            {"height", kSide},
+            {"transform",
+             {vega::name_of("s", labels, "label"), vega::filter("method == 'all' || datum.label == method")}},
+            {"layer", json::array({layer("drive", 30, 0.6), layer("centre", 220, 1)})}};
+  }
+
+ private:
+  void add(std::size_t sense, const char* kind, double x, double y) {
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{:.6g},{:.6g}\n", labels.size(),
+                   sense == 0 ? "clockwise" : "counter-clockwise", kind, x, y);
+    const double at[] = {x, y};
+    for (std::size_t c = 0; c < 2; ++c)
+      if (std::isfinite(at[c])) low[c] = std::min(low[c], at[c]), high[c] = std::max(high[c], at[c]);
+  }
+};
+
 std::optional<Table> ends_table(const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "ends";
@@ -221,51 +273,22 @@ std::vector<Table> drive_tables(const Comparison& comparison) {
 
 void add_end_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                     Document& document) {
-  using vega::json;
-  std::vector<std::string> labels;
-  std::string csv = "s,sense,kind,x,y\n";
-  for (const ComparisonRow& row : comparison.rows) {
-    const auto ends = ends_of(*row.shown);
-    if (!ends) continue;
-    for (std::size_t sense = 0; sense < 2; ++sense) {
-      const Ends& e = (*ends)[sense];
-      const char* const name = sense == 0 ? "clockwise" : "counter-clockwise";
-      for (std::size_t i = 0; i < e.x.size(); ++i)
-        fmt::format_to(std::back_inserter(csv), "{},{},drive,{:.6g},{:.6g}\n", labels.size(), name, e.x[i],
-                       e.y[i]);
-      fmt::format_to(std::back_inserter(csv), "{},{},centre,{:.6g},{:.6g}\n", labels.size(), name,
-                     e.mean(e.x), e.mean(e.y));
-    }
-    labels.push_back(row.label);
-  }
-  if (labels.empty()) return;
+  EndPoints points;
+  for (const ComparisonRow& row : comparison.rows)
+    if (const auto ends = ends_of(*row.shown)) points.add(row.label, *ends);
+  if (points.labels.empty()) return;
   const std::string id = prefix + "ends";
-  document.datasets[id] = csv;
+  document.datasets[id] = points.csv;
   const std::string caption =
       "End errors y over x in metres, reference minus odometry seen from the start: a small sign per drive, "
-      "a "
-      "large one for the centre of each sense. UMBmark's E_max,syst is the distance of the farther centre "
+      "a large one for the centre of each sense. UMBmark's E_max,syst is the distance of the farther centre "
       "from 0.";
-  const json encoding{{"x", vega::quantitative("x", "end error x [m]")},
-                      {"y", vega::quantitative("y", "end error y [m]")},
-                      {"color", vega::nominal("label", "", labels)},
-                      {"shape", vega::nominal("sense", "", {"clockwise", "counter-clockwise"})}};
-  const auto layer = [&](const char* kind, int size, double opacity) {
-    return json{
-        {"transform", {vega::filter(fmt::format("datum.kind == '{}'", kind))}},
-        {"mark",
-         {{"type", "point"}, {"filled", true}, {"size", size}, {"opacity", opacity}, {"tooltip", true}}},
-        {"encoding", encoding}};
-  };
-  json body{{"width", kFigureWidth},
-            {"height", 380},
-            {"transform",
-             {vega::name_of("s", labels, "label"), vega::filter("method == 'all' || datum.label == method")}},
-            {"layer", json::array({layer("drive", 30, 0.6), layer("centre", 220, 1)})}};
-  section.blocks.push_back(Figure{
-      id, fmt::format("End errors with both centres{}", comparison.title_suffix), caption,
-      vega::specification(caption, vega::csv_data(id, {"s", "x", "y"}),
-                          {vega::choice_of("method", "Method", "all methods", labels)}, std::move(body))});
+  vega::json spec = vega::specification(caption, vega::csv_data(id, {"s", "x", "y"}),
+                                        {vega::choice_of("method", "Method", "all methods", points.labels)},
+                                        points.chart());
+  spec["usermeta"]["odobench"]["aspect"] = "equal";
+  section.blocks.push_back(Figure{id, fmt::format("End errors with both centres{}", comparison.title_suffix),
+                                  caption, std::move(spec)});
 }
 
 }  // namespace odobench
