@@ -20,26 +20,15 @@
 #include <string>
 #include <vector>
 
+#include "base/parameter.hpp"
 #include "problems/block_quadratic.hpp"
 #include "problems/lattice.hpp"
+#include "problems/matrices.hpp"
 
 namespace odobench {
 
-using Vector = Eigen::VectorXd;
-using Matrix = Eigen::MatrixXd;
-using ConstVectorRef = Eigen::Ref<const Vector>;
-using VectorRef = Eigen::Ref<Vector>;
-using ConstMatrixRef = Eigen::Ref<const Matrix>;
-using MatrixRef = Eigen::Ref<Matrix>;
-
-// One calibrated quantity and its box. lower == upper means: held fixed.
-struct ParameterInfo {
-  std::string name;
-  std::string unit;
-  double nominal = 0;
-  double lower = 0;
-  double upper = 0;
-};
+// One calibrated quantity and its box.
+using ParameterInfo = Parameter;
 
 // Throws std::invalid_argument naming the parameter, the values and the violated relation unless all are
 // finite and lower <= nominal <= upper, the list is not empty and the names are unique.

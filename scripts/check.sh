@@ -54,7 +54,7 @@ problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems
 problems/fusion               problems problems/kalman problems/calibration problems/robots datasets
 problems/information          problems problems/calibration problems/robots datasets
-problems/robots               datasets datasets/robots
+problems/robots               datasets datasets/robots problems/matrices.hpp
 problems/simulation           datasets/ problems/robots
 problems/simulation/motors    problems/simulation
 solvers                       problems/problem.hpp problems/instruction_set.hpp

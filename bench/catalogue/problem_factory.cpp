@@ -17,10 +17,7 @@
 namespace odobench {
 
 std::vector<ParameterInfo> robot_parameters(const Robot& robot) {
-  std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : robot.parameters)
-    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  return list;
+  return robot.parameters;
 }
 
 namespace {

@@ -7,10 +7,10 @@
 
 namespace odobench {
 
-void append_track(const PoseTrack& track, PoseColumns& columns) {
-  columns.x.insert(columns.x.end(), track.x.begin(), track.x.end());
-  columns.y.insert(columns.y.end(), track.y.begin(), track.y.end());
-  columns.theta.insert(columns.theta.end(), track.theta.begin(), track.theta.end());
+void append_track(const PoseTrack& track, PoseTrack& all) {
+  all.x.insert(all.x.end(), track.x.begin(), track.x.end());
+  all.y.insert(all.y.end(), track.y.begin(), track.y.end());
+  all.theta.insert(all.theta.end(), track.theta.begin(), track.theta.end());
 }
 
 TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loaded) {

@@ -12,7 +12,7 @@ namespace odobench {
 // Recordings, times and reference; no tracks yet.
 TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loaded);
 
-void append_track(const PoseTrack& track, PoseColumns& columns);
+void append_track(const PoseTrack& track, PoseTrack& all);
 
 // The track of the run that the tables show of each label (the median by J), integrated from its parameters.
 // `loaded`: a calibration; records of other problems have none.

@@ -49,7 +49,7 @@ std::string folder_name(const std::string& label, std::set<std::string>& taken) 
   return name;
 }
 
-std::string tum_text(const TrackSet& set, const TrackRecording& recording, const PoseColumns& pose) {
+std::string tum_text(const TrackSet& set, const TrackRecording& recording, const PoseTrack& pose) {
   std::string text;
   for (std::size_t k = recording.begin; k < recording.begin + recording.samples; ++k)
     fmt::format_to(std::back_inserter(text), "{} {} {} 0 0 0 {} {}\n", set.time_s[k], pose.x[k], pose.y[k],
@@ -70,7 +70,7 @@ ExitCode export_command(const ExportOptions& options) {
   FileTransaction transaction(existing_files(options.overwrite));
   std::vector<fs::path> written;
   std::set<std::string> taken;
-  const auto add = [&](const std::string& label, const PoseColumns& pose) {
+  const auto add = [&](const std::string& label, const PoseTrack& pose) {
     const std::string folder = folder_name(label, taken);
     require_own_folder(out / folder);
     for (const TrackRecording& r : set->recordings) {

@@ -16,16 +16,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/parameter.hpp"
+
 namespace odobench {
 
 // One robot parameter as the set states it; SI units.
-struct RobotParameter {
-  std::string name;
-  std::string unit;
-  double nominal = 0;
-  double lower = 0;
-  double upper = 0;
-};
+using RobotParameter = Parameter;
 
 // A wheel's drive speed is the weighted sum of these signals: one encoder, the mean of two, one counting
 // backwards.

@@ -83,9 +83,7 @@ CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
 
 CalibrationProblem::CalibrationProblem(const Robot& robot, std::vector<Recording> recordings,
                                        const CalibrationOptions& options, InstructionSet kernel)
-    : recordings_(std::move(recordings)), options_(options), kernel_(kernel) {
-  for (const RobotParameter& p : robot.parameters)
-    parameters_.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
+    : parameters_(robot.parameters), recordings_(std::move(recordings)), options_(options), kernel_(kernel) {
   if (structured_form_fits(robot, options)) {
     check(parameters_, recordings_);
     structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);

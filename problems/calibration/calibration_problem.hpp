@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 
+#include "base/pose.hpp"
 #include "datasets/recording.hpp"
 #include "datasets/robots/robot.hpp"
 #include "problems/calibration/calibration_options.hpp"
@@ -26,11 +27,6 @@
 namespace odobench {
 
 inline constexpr Eigen::Index kCalibrationParameters = 12;
-
-// Estimated poses of one recording, one entry per sample.
-struct PoseTrack {
-  std::vector<double> x, y, theta;
-};
 
 // Largest absolute error of one recording over its samples: |x-x_ref|, |y-y_ref| [m], |theta-theta_ref|
 // [rad].

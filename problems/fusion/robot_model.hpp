@@ -15,14 +15,11 @@
 
 #include <cmath>
 
+#include "base/pose.hpp"
 #include "datasets/recording.hpp"
 #include "problems/kalman/kalman_filter.hpp"
 
 namespace odobench {
-
-struct Twist {
-  double vx = 0, vy = 0, omega = 0;  // body frame; m/s, m/s, rad/s
-};
 
 // (2.16)-(2.17) of the thesis in the body frame for the parameters z = (a1..a4, b1..b4, r1..r4), sample k.
 Twist wheel_twist(const Recording& recording, std::size_t k, const ConstVectorRef& z);

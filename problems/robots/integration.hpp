@@ -16,7 +16,7 @@
 #include <Eigen/Core>
 
 #include "datasets/robots/integration_rule.hpp"
-#include "problems/robots/matrices.hpp"
+#include "problems/matrices.hpp"
 
 namespace odobench::robots {
 

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "datasets/robots/wheel.hpp"
-#include "problems/robots/matrices.hpp"
+#include "problems/matrices.hpp"
 
 namespace odobench::robots {
 

@@ -5,20 +5,13 @@
 
 #include <array>
 
+#include "base/pose.hpp"
 #include "datasets/robot_4wis4wid.hpp"
 
 namespace odobench::simulate {
 
 using Parameters = std::array<double, 3 * kWheelCount>;
 using PerWheel = std::array<double, kWheelCount>;
-
-// Velocity of the body in its own frame.
-struct Twist {
-  double vx = 0, vy = 0, omega = 0;  // m/s, m/s, rad/s
-};
-struct Pose {
-  double x = 0, y = 0, theta = 0;
-};
 
 struct WheelState {
   PerWheel steering{};  // rad

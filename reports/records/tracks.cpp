@@ -50,7 +50,7 @@ std::string npy(const std::vector<double>& values) {
   return out;
 }
 
-std::string npy(const PoseColumns& pose) {
+std::string npy(const PoseTrack& pose) {
   std::string out = npy_header(fmt::format("{}, 3", pose.x.size()));
   out.reserve(out.size() + 24 * pose.x.size());
   for (std::size_t k = 0; k < pose.x.size(); ++k)
@@ -58,7 +58,7 @@ std::string npy(const PoseColumns& pose) {
   return out;
 }
 
-void require_length(const PoseColumns& pose, std::size_t n, const std::string& what) {
+void require_length(const PoseTrack& pose, std::size_t n, const std::string& what) {
   if (pose.x.size() != n || pose.y.size() != n || pose.theta.size() != n)
     throw std::invalid_argument(fmt::format("tracks: {} has {}, {}, {} samples, expected {}", what,
                                             pose.x.size(), pose.y.size(), pose.theta.size(), n));
@@ -79,9 +79,9 @@ std::vector<double> read_npy(const fs::path& file, const std::string& shape, std
   return values;
 }
 
-PoseColumns read_pose(const fs::path& file, std::size_t n) {
+PoseTrack read_pose(const fs::path& file, std::size_t n) {
   const std::vector<double> values = read_npy(file, fmt::format("{}, 3", n), 3 * n);
-  PoseColumns pose{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  PoseTrack pose{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
   for (std::size_t k = 0; k < n; ++k) {
     pose.x[k] = values[3 * k];
     pose.y[k] = values[3 * k + 1];

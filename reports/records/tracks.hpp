@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/pose.hpp"
+
 namespace odobench {
 
 inline constexpr int kTracksSchemaVersion = 1;
@@ -29,22 +31,17 @@ struct TrackRecording {
   std::size_t begin = 0, samples = 0;  // place in the arrays
 };
 
-// x, y [m], theta [rad] of all samples.
-struct PoseColumns {
-  std::vector<double> x, y, theta;
-};
-
 struct StoredTrack {
   std::string label;
   int repetition = 1;  // of the run
-  PoseColumns pose;
+  PoseTrack pose;
 };
 
 struct TrackSet {
   std::string problem, dataset, dataset_sha256;
   std::vector<TrackRecording> recordings;
   std::vector<double> time_s;
-  PoseColumns reference;
+  PoseTrack reference;
   std::vector<StoredTrack> tracks;
 };
 

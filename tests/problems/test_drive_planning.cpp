@@ -27,19 +27,14 @@ RecordingScenario known(const std::string& name) {
 Vector vector_of(const simulate::Parameters& z) {
   return Eigen::Map<const Vector>(z.data(), kCalibrationParameters);
 }
-std::vector<ParameterInfo> infos(const Robot& robot) {
-  std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : robot.parameters)
-    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  return list;
-}
 std::vector<DriveInformation> informations(const RecordingScenario& s, int replicas, std::uint64_t seed) {
   std::vector<DriveInformation> list(s.drives.size());
   parallel_for(list.size(), 0, [&](std::size_t i) {
     std::vector<Recording> recordings;
     for (int k = 1; k <= replicas; ++k)
       recordings.push_back(simulate::simulate_drive(s, s.drives[i], k, seed).recording);
-    list[i] = drive_information(s.drives[i].name, infos(s.robot), recordings, vector_of(s.truth.parameters));
+    list[i] =
+        drive_information(s.drives[i].name, s.robot.parameters, recordings, vector_of(s.truth.parameters));
   });
   return list;
 }
@@ -51,7 +46,7 @@ Vector calibrated(const Dataset& set) {
 std::vector<DriveInformation> ideal(const RecordingScenario& s) {
   std::vector<DriveInformation> list;
   for (const simulate::Drive& d : s.drives)
-    list.push_back(ideal_information(d.name, infos(s.robot), simulate::exact_recording(s, d),
+    list.push_back(ideal_information(d.name, s.robot.parameters, simulate::exact_recording(s, d),
                                      vector_of(s.truth.parameters), 1e-4));
   return list;
 }
@@ -60,7 +55,7 @@ std::vector<DriveInformation> ideal(const RecordingScenario& s) {
 TEST(DrivePlanning, IdealDrivesHaveRankSix) {
   RecordingScenario s = known("exact");
   s.truth.parameters = simulate::nominal_parameters(s.robot);
-  const PlanAnalysis a = analyse_drives(ideal(s), std::vector<int>(6, 1), infos(s.robot), 0.01);
+  const PlanAnalysis a = analyse_drives(ideal(s), std::vector<int>(6, 1), s.robot.parameters, 0.01);
   ASSERT_EQ(a.directions.size(), 12u);
   for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(a.directions[k].singular_value > 0, k < 6) << k;
   for (const double sd : a.standard_deviations) EXPECT_TRUE(std::isinf(sd));
@@ -74,7 +69,7 @@ TEST(DrivePlanning, NullDirectionsAreTheReferences) {
   const nlohmann::json reference = testing::reference_json("identifiability.json");
   RecordingScenario s = known("exact");
   s.truth.parameters = simulate::nominal_parameters(s.robot);
-  const PlanAnalysis a = analyse_drives(ideal(s), std::vector<int>(6, 1), infos(s.robot), 0.01);
+  const PlanAnalysis a = analyse_drives(ideal(s), std::vector<int>(6, 1), s.robot.parameters, 0.01);
   Matrix seen(12, 6);
   for (Eigen::Index k = 0; k < 6; ++k) seen.col(k) = a.directions[static_cast<std::size_t>(k)].vector;
   for (const auto& row : reference.at("null_basis")) {
@@ -137,9 +132,9 @@ TEST(DrivePlanning, ProposesWhatIsMissing) {
 
 TEST(DrivePlanning, RefusesWhatDoesNotFit) {
   const RecordingScenario s = known("exact");
-  EXPECT_THROW(drive_information("d", infos(s.robot), {}, vector_of(s.truth.parameters)),
+  EXPECT_THROW(drive_information("d", s.robot.parameters, {}, vector_of(s.truth.parameters)),
                std::invalid_argument);
-  EXPECT_THROW(analyse_drives(ideal(s), {1, 2}, infos(s.robot), 0.01), std::invalid_argument);
+  EXPECT_THROW(analyse_drives(ideal(s), {1, 2}, s.robot.parameters, 0.01), std::invalid_argument);
 }
 
 // ODOBENCH_SEEDS sets how many data sets are calibrated; 100 for the figure in docs/simulation.md.
@@ -159,7 +154,7 @@ double total_error(const Dataset& set, const Vector& z) {
 TEST(DrivePlanning, DeterminedParametersComeBack) {
   const RecordingScenario s = known("rich");
   const std::vector<int> counts(s.drives.size(), s.repetitions);
-  const PlanAnalysis plan = analyse_drives(informations(s, 40, 99), counts, infos(s.robot), 0.005);
+  const PlanAnalysis plan = analyse_drives(informations(s, 40, 99), counts, s.robot.parameters, 0.005);
   std::vector<Eigen::Index> determined;
   for (Eigen::Index i = 0; i < 12; ++i)
     if (plan.standard_deviations[i] <= 0.005) determined.push_back(i);

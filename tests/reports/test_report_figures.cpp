@@ -100,7 +100,7 @@ TrackSet small_tracks(std::size_t samples = 50) {
       for (std::size_t k = 0; k < samples; ++k) {
         const double t = 0.1 * static_cast<double>(k);
         set.time_s.push_back(t);
-        const auto add = [&](PoseColumns& pose, double off) {
+        const auto add = [&](PoseTrack& pose, double off) {
           pose.x.push_back(t + off * t);
           pose.y.push_back(std::sin(t) - off);
           pose.theta.push_back(0.3 * t * drive + off * t * t);

@@ -310,10 +310,7 @@ constexpr double kOptimum = 98.11878293;
 const Problem& calibration() {
   static const Problem problem = [] {
     const Dataset set = import_vitko2024(testing::shared_folder() / "datasets" / "vitko2024");
-    std::vector<ParameterInfo> parameters;
-    for (const RobotParameter& p : set.robot.parameters)
-      parameters.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-    return Problem(CalibrationProblem(parameters, set.recordings));
+    return Problem(CalibrationProblem(set.robot.parameters, set.recordings));
   }();
   return problem;
 }

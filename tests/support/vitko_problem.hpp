@@ -16,10 +16,7 @@ inline const Dataset& vitko_dataset() {
 }
 
 inline std::vector<ParameterInfo> parameters_of(const Dataset& set) {
-  std::vector<ParameterInfo> list;
-  for (const RobotParameter& p : set.robot.parameters)
-    list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  return list;
+  return set.robot.parameters;
 }
 
 inline std::shared_ptr<const CalibrationProblem> vitko_model() {

@@ -15,6 +15,14 @@ Better better_at(std::size_t stage) {
   return std::string_view(kNoiseStages[stage]) == "after" ? Better::Lower : Better::None;
 }
 
+// Half of the rotation before the step and half after it: second order in the step.
+void advance(Pose& pose, double sx, double sy, double rotation) {
+  const double middle = pose.theta + rotation / 2;
+  pose.x += sx * std::cos(middle) - sy * std::sin(middle);
+  pose.y += sx * std::sin(middle) + sy * std::cos(middle);
+  pose.theta += rotation;
+}
+
 }  // namespace
 
 void Average::add(double value) {
@@ -36,15 +44,7 @@ void NoiseMeter::Errors::add(double error) {
   magnitude.add(std::abs(error));
 }
 
-// Half of the rotation before the step and half after it: second order in the step.
-void NoiseMeter::Pose::step(double sx, double sy, double rotation) {
-  const double middle = heading + rotation / 2;
-  x += sx * std::cos(middle) - sy * std::sin(middle);
-  y += sx * std::sin(middle) + sy * std::cos(middle);
-  heading += rotation;
-}
-
-void NoiseMeter::Track::compare(const Pose& truth) {
+void NoiseMeter::Deviation::compare(const Pose& truth) {
   end = std::hypot(pose.x - truth.x, pose.y - truth.y);
   max = std::max(max, end);
 }
@@ -80,11 +80,11 @@ void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const Tru
               {row.sample.ay, output.state.ay12 - mean_y + truth.ay, zero.ay12 - mean_y + truth.ay});
   add_channel(4, truth.rotation, {row.sample.rotation, output.first.rotation, control.rotation});
 
-  true_pose_.step(truth.sx, truth.sy, radians_ * truth.rotation);
-  tracks_[0].pose.step(raw_x, raw_y, radians_ * row.sample.rotation);
-  tracks_[1].pose.step(output.state.sx1, output.state.sy1, radians_ * output.first.rotation);
-  tracks_[2].pose.step(zero.sx1, zero.sy1, radians_ * control.rotation);
-  for (Track& track : tracks_) track.compare(true_pose_);
+  advance(true_pose_, truth.sx, truth.sy, radians_ * truth.rotation);
+  advance(tracks_[0].pose, raw_x, raw_y, radians_ * row.sample.rotation);
+  advance(tracks_[1].pose, output.state.sx1, output.state.sy1, radians_ * output.first.rotation);
+  advance(tracks_[2].pose, zero.sx1, zero.sy1, radians_ * control.rotation);
+  for (Deviation& track : tracks_) track.compare(true_pose_);
 }
 
 void NoiseMeter::report(Measures& measures) const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pose.hpp"
 #include "bench/studies/entropy/entropy_setup.hpp"
 #include "bench/studies/entropy/entropy_signals.hpp"
 #include "problems/entropy/sliding_filter.hpp"
@@ -58,11 +59,7 @@ class NoiseMeter {
     Average square, magnitude;
     void add(double error);
   };
-  struct Pose {
-    double x = 0, y = 0, heading = 0;
-    void step(double sx, double sy, double rotation);
-  };
-  struct Track {
+  struct Deviation {
     Pose pose;
     double end = 0, max = 0;
     void compare(const Pose& truth);
@@ -74,7 +71,7 @@ class NoiseMeter {
   std::array<std::array<Errors, 3>, kNoiseChannels.size()> errors_{};  // channel, stage
   std::array<Average, kNoiseChannels.size()> truth_{};                 // |truth|
   Pose true_pose_;
-  std::array<Track, 3> tracks_{};
+  std::array<Deviation, 3> tracks_{};
 };
 
 // Effort, H and gaps of the method.

@@ -30,7 +30,7 @@ std::vector<FilterChoice> parse_filters(const std::vector<std::string>& lists);
 struct FusedRow {
   FusionRow row;
   std::vector<RecordingError> errors;
-  PoseColumns track;  // all recordings, one after the other
+  PoseTrack track;  // all recordings, one after the other
 };
 
 // All recordings with one parameter set and filter; `streams` per recording. `threads` does not change the

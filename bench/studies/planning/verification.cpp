@@ -32,8 +32,8 @@ std::vector<ParameterSet> read_sets(const simulate::RecordingScenario& s, const 
 }
 
 std::array<double, 2> arrival_of(const simulate::SimulatedDrive& d, const simulate::Drive& drive) {
-  const simulate::Pose &start = d.logs.true_poses.front(), &end = d.logs.true_poses.back();
-  const simulate::Pose wanted = drive.reference(drive.duration());
+  const Pose &start = d.logs.true_poses.front(), &end = d.logs.true_poses.back();
+  const Pose wanted = drive.reference(drive.duration());
   const double c = std::cos(start.theta), s = std::sin(start.theta);
   const double x = start.x + c * wanted.x - s * wanted.y, y = start.y + s * wanted.x + c * wanted.y;
   return {std::hypot(end.x - x, end.y - y), std::abs(end.theta - start.theta - wanted.theta)};

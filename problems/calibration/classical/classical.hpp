@@ -14,8 +14,8 @@
 
 #include "datasets/recording.hpp"
 #include "datasets/robots/robot.hpp"
+#include "problems/matrices.hpp"
 #include "problems/robots/integration.hpp"
-#include "problems/robots/matrices.hpp"
 
 namespace odobench::classical {
 

@@ -27,7 +27,7 @@ std::span<const double> part(const std::vector<double>& values, const TrackRecor
   return std::span(values).subspan(recording.begin, recording.samples);
 }
 
-Columns pose_of(const PoseColumns& pose, const TrackRecording& r) {
+Columns pose_of(const PoseTrack& pose, const TrackRecording& r) {
   const auto copy = [&](const std::vector<double>& v) {
     const auto s = part(v, r);
     return std::vector<double>(s.begin(), s.end());

@@ -1,4 +1,4 @@
-// Names of vectors and matrices, the same as in problems/problem.hpp: robots need nothing else of a problem.
+// Names of vectors and matrices: all that robots need of a problem.
 #pragma once
 
 #include <Eigen/Core>
