@@ -12,6 +12,7 @@
 #include <exception>
 #include <memory>
 
+#include "bench/benchmarks/data_option.hpp"
 #include "datasets/dataset.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/calibration/structure.hpp"
@@ -31,10 +32,9 @@ Setting load_setting(const std::string& path) {
   Dataset set = load_dataset(path);
   Setting s;
   s.nominal.resize(static_cast<Eigen::Index>(set.robot.parameters.size()));
-  for (const RobotParameter& p : set.robot.parameters) {
-    s.nominal[static_cast<Eigen::Index>(s.parameters.size())] = p.nominal;
-    s.parameters.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
-  }
+  s.parameters = set.robot.parameters;
+  for (Eigen::Index i = 0; i < s.nominal.size(); ++i)
+    s.nominal[i] = s.parameters[static_cast<std::size_t>(i)].nominal;
   s.recordings = std::move(set.recordings);
   for (const Recording& r : s.recordings) s.samples += static_cast<double>(r.size());
   s.direct_seconds = 1e9;
@@ -110,14 +110,8 @@ void register_all(const Setting& s) {
 }  // namespace odobench
 
 int main(int argc, char** argv) {
-  std::string data = ODOBENCH_SOURCE_DIR "/datasets/demo/set.json";
-  for (int i = 1; i < argc; ++i) {
-    if (std::strncmp(argv[i], "--data=", 7) != 0) continue;
-    data = argv[i] + 7;
-    std::rotate(argv + i, argv + i + 1, argv + argc);
-    --argc;
-    --i;
-  }
+  const std::string data =
+      odobench::take_data_option(argc, argv, ODOBENCH_SOURCE_DIR "/datasets/demo/set.json");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

@@ -18,6 +18,7 @@
 #include <numbers>
 #include <random>
 
+#include "bench/benchmarks/data_option.hpp"
 #include "datasets/entropy/entropy_window_file.hpp"
 #include "problems/entropy/direct_form.hpp"
 #include "problems/entropy/sliding_filter.hpp"
@@ -216,14 +217,7 @@ std::vector<Setting> settings_of_file(const std::string& path) {
 }  // namespace odobench
 
 int main(int argc, char** argv) {
-  std::string data;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strncmp(argv[i], "--data=", 7) != 0) continue;
-    data = argv[i] + 7;
-    std::rotate(argv + i, argv + i + 1, argv + argc);
-    --argc;
-    --i;
-  }
+  const std::string data = odobench::take_data_option(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

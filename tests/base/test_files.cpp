@@ -31,17 +31,6 @@ using testing::everything_in;
 using testing::says;
 using testing::TemporaryFolder;
 
-// The message of the std::invalid_argument that action throws; empty when it throws none.
-template <class Action>
-std::string usage_error(Action action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
-}
-
 // No file of this process grows beyond so many bytes, until the end of the object.
 class FileSizeLimit {
  public:
@@ -181,9 +170,10 @@ TEST(FileIo, FilesThatAreThereAreRefusedOnRequest) {
   const TemporaryFolder folder;
   const std::string file = folder.file("file", "old");
   const std::string wanted = file + ": it exists; choose another name or give --overwrite";
-  EXPECT_EQ(usage_error([&] { require_writable(file, Existing::Refuse); }), wanted);
-  EXPECT_EQ(usage_error([&] { require_writable(file, Existing::Refuse, "--out"); }), "--out=" + wanted);
-  EXPECT_EQ(usage_error([&] { write_file(file, "new", Existing::Refuse); }), wanted);
+  EXPECT_EQ(testing::usage_error([&] { require_writable(file, Existing::Refuse); }), wanted);
+  EXPECT_EQ(testing::usage_error([&] { require_writable(file, Existing::Refuse, "--out"); }),
+            "--out=" + wanted);
+  EXPECT_EQ(testing::usage_error([&] { write_file(file, "new", Existing::Refuse); }), wanted);
   EXPECT_EQ(read_file(file), "old");
   EXPECT_NO_THROW(require_writable(file, Existing::Replace));
   EXPECT_NO_THROW(require_writable(folder / "new", Existing::Refuse));
@@ -194,14 +184,14 @@ TEST(FileIo, FilesThatAreThereAreRefusedOnRequest) {
   files.add(folder / "late", "mine");
   EXPECT_EQ(files.targets(), std::vector<fs::path>{folder / "late"});
   folder.file("late", "theirs");
-  EXPECT_NE(usage_error([&] { files.commit(); }), "");
+  EXPECT_NE(testing::usage_error([&] { files.commit(); }), "");
   EXPECT_EQ(read_file(folder / "late"), "theirs");
 }
 
 TEST(FileIo, FoldersThatAreLinksAreNotOurs) {
   const TemporaryFolder folder;
   fs::create_directory_symlink(folder.path(), folder / "link");
-  EXPECT_EQ(usage_error([&] { require_own_folder(folder / "link"); }),
+  EXPECT_EQ(testing::usage_error([&] { require_own_folder(folder / "link"); }),
             (folder / "link").string() + ": found a link, expected a folder or none");
   EXPECT_NO_THROW(require_own_folder(folder.path()));
   EXPECT_NO_THROW(require_own_folder(folder / "none"));
@@ -285,7 +275,7 @@ TEST(FileLocks, TheSecondWaitsAndThenSaysWhoHasIt) {
   lock_place(one, file, milliseconds(0));  // its own already
   lock_place(-1, file, milliseconds(0));   // what cannot be locked is left without
   const auto begin = std::chrono::steady_clock::now();
-  const std::string message = usage_error([&] { lock_place(other, file, milliseconds(50)); });
+  const std::string message = testing::usage_error([&] { lock_place(other, file, milliseconds(50)); });
   EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(50));
   const bool listed =
       testing::content("/proc/locks").find(fmt::format(" {} ", ::getpid())) != std::string::npos;
@@ -328,11 +318,11 @@ TEST(LineFiles, AreOnDiscLineByLine) {
     EXPECT_EQ(read_file(path), "head\n");
     file.append("two");
     // Locked still, under the new file of that name.
-    EXPECT_TRUE(says(usage_error([&] { LineFile(path, Existing::Replace); }), {"is writing there"}));
+    EXPECT_TRUE(says(testing::usage_error([&] { LineFile(path, Existing::Replace); }), {"is writing there"}));
   }
   EXPECT_EQ(read_file(path), "head\ntwo\n");
   EXPECT_EQ(everything_in(folder.path()), (std::vector<std::string>{"deep", "er", "lines"}));
-  EXPECT_EQ(usage_error([&] { LineFile(path, Existing::Refuse); }),
+  EXPECT_EQ(testing::usage_error([&] { LineFile(path, Existing::Refuse); }),
             path.string() + ": it exists; choose another name or give --overwrite");
   EXPECT_EQ(read_file(path), "head\ntwo\n");
   LineFile(path, Existing::Replace).append("new");
@@ -351,14 +341,14 @@ TEST(LineFiles, OnlyWhatItMadeIsRemovedWhenEmpty) {
 TEST(LineFiles, RefuseWhatIsNoFile) {
   const TemporaryFolder folder;
   const std::string file = folder.file("file", "text");
-  EXPECT_TRUE(says(usage_error([&] { LineFile(folder / "file/deep/lines", Existing::Replace); }),
+  EXPECT_TRUE(says(testing::usage_error([&] { LineFile(folder / "file/deep/lines", Existing::Replace); }),
                    {file + "/deep: folder cannot be created: Not a directory"}));
   fs::create_symlink(file, folder / "link");
-  EXPECT_TRUE(
-      says(usage_error([&] { LineFile(folder / "link", Existing::Replace); }), {"link: found a link"}));
+  EXPECT_TRUE(says(testing::usage_error([&] { LineFile(folder / "link", Existing::Replace); }),
+                   {"link: found a link"}));
   EXPECT_EQ(data_error([&] { LineFile(folder.path(), Existing::Replace); }),
             folder.path().string() + ": cannot be written: Is a directory");
-  EXPECT_TRUE(says(usage_error([&] { LineFile("/proc/self/lines", Existing::Refuse); }),
+  EXPECT_TRUE(says(testing::usage_error([&] { LineFile("/proc/self/lines", Existing::Refuse); }),
                    {"/proc/self/lines: cannot be written: "}));
   EXPECT_EQ(read_file(file), "text");
   EXPECT_EQ(everything_in(folder.path()), (std::vector<std::string>{"file", "link"}));

@@ -9,6 +9,7 @@
 
 #include "problems/simulation/motors/drive.hpp"
 #include "problems/simulation/motors/sensors.hpp"
+#include "tests/support/data_error.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
@@ -22,16 +23,6 @@ constexpr ModelOptions kReferenceModel{true, false, false};  // of the vectors w
 
 DriveSetup setup_of(const std::string& set, const std::string& name, ModelOptions model = {}) {
   return {robot_set(set), model, {}, experiment(name)};
-}
-
-template <class Action>
-std::string usage_error(Action action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
 }
 
 // (2.3)-(2.4) from the eigenvalues: i and w after a step to `u` from rest.
@@ -288,26 +279,26 @@ TEST(Dynamics, CsvHasSteeringOnlyWhereThereIsSome) {
 TEST(DynamicsRefuses, ParametersThatNoRobotHas) {
   for (const ParameterDescription& d : parameter_descriptions()) {
     RobotParameters p = robot_set("grip");
-    EXPECT_EQ(usage_error([&] { validate(p); }), "");
+    EXPECT_EQ(testing::usage_error([&] { validate(p); }), "");
     for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) {
       d.value(p) = bad;
-      EXPECT_THAT(usage_error([&] { validate(p); }), HasSubstr(std::string(d.name) + " is ")) << bad;
+      EXPECT_THAT(testing::usage_error([&] { validate(p); }), HasSubstr(std::string(d.name) + " is ")) << bad;
     }
     d.value(p) = 0;
-    EXPECT_EQ(usage_error([&] { validate(p); }).empty(), d.may_be_zero) << d.name;
+    EXPECT_EQ(testing::usage_error([&] { validate(p); }).empty(), d.may_be_zero) << d.name;
   }
   RobotParameters p = robot_set("grip");
   p.mass = -5;
-  EXPECT_EQ(usage_error([&] { validate(p); }), "mass is -5 kg, expected a positive number");
-  EXPECT_THAT(usage_error([] { robot_set("gripp"); }), HasSubstr("gripp"));
-  EXPECT_THAT(usage_error([] { experiment("exp4"); }), HasSubstr("exp4"));
+  EXPECT_EQ(testing::usage_error([&] { validate(p); }), "mass is -5 kg, expected a positive number");
+  EXPECT_THAT(testing::usage_error([] { robot_set("gripp"); }), HasSubstr("gripp"));
+  EXPECT_THAT(testing::usage_error([] { experiment("exp4"); }), HasSubstr("exp4"));
 }
 
 TEST(DynamicsRefuses, DrivesThatCannotBe) {
   const auto error_of = [](auto change, double step = 0.1) {
     DriveSetup setup = setup_of("grip", "exp1_steered");
     change(setup);
-    return usage_error([&] { simulate_drive(setup, step); });
+    return testing::usage_error([&] { simulate_drive(setup, step); });
   };
   EXPECT_EQ(error_of([](DriveSetup& s) { s.segments[0].until_s = 1; }), "");
   EXPECT_THAT(error_of([](DriveSetup& s) { s.segments.clear(); }), HasSubstr("segments: found none"));
@@ -329,7 +320,7 @@ TEST(DynamicsRefuses, DrivesThatCannotBe) {
                 s.model = {false, true, true};
               }),
               HasSubstr("contradictory options"));
-  EXPECT_THAT(usage_error([] { SensorNoise{-1, 0, 0}.validate(); }), HasSubstr("encoder_m2 is -1"));
+  EXPECT_THAT(testing::usage_error([] { SensorNoise{-1, 0, 0}.validate(); }), HasSubstr("encoder_m2 is -1"));
 }
 
 TEST(DynamicsRefuses, AStepTooLongForTheMotor) {

@@ -12,6 +12,7 @@
 #include "problems/fusion/fusion.hpp"
 #include "problems/fusion/robot_model.hpp"
 #include "problems/fusion/sensor_streams.hpp"
+#include "tests/support/data_error.hpp"
 #include "tests/support/synthetic_recording.hpp"
 
 namespace odobench {
@@ -64,16 +65,6 @@ Vector wrong() {
 double largest_error(const Recording& r, const PoseTrack& track) {
   const MaxErrors e = track_errors(r, track, {}).max;
   return std::max({e.x, e.y, e.theta});
-}
-
-template <class Exception, class Action>
-std::string refusal(Action action) {
-  try {
-    action();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Fusion, WithoutMeasurementsInTimeItIsTheOdometry) {
@@ -317,10 +308,10 @@ TEST(Fusion, RefusesBadInput) {
   const Recording r = exact_drive(50);
   const std::vector<SensorStream> good{pose(r, 5, 1e-2, 1e-2)};
   const auto usage = [&](const std::vector<SensorStream>& s, const FusionOptions& o) {
-    return refusal<std::invalid_argument>([&] { fuse(r, nominal(), s, o); });
+    return testing::refusal_of<std::invalid_argument>([&] { fuse(r, nominal(), s, o); });
   };
   const auto data = [&](const std::vector<SensorStream>& s) {
-    return refusal<std::runtime_error>([&] { fuse(r, nominal(), s, {}); });
+    return testing::refusal_of<std::runtime_error>([&] { fuse(r, nominal(), s, {}); });
   };
   FusionOptions o;
   o.sigma_velocity = 0;
@@ -365,7 +356,7 @@ TEST(Fusion, RefusesBadInput) {
   EXPECT_THAT(data(s), HasSubstr("not finite"));
   Recording shuffled = r;
   std::swap(shuffled.time_us[3], shuffled.time_us[4]);
-  EXPECT_THAT(refusal<std::runtime_error>([&] { fuse(shuffled, nominal(), good, {}); }),
+  EXPECT_THAT(testing::refusal_of<std::runtime_error>([&] { fuse(shuffled, nominal(), good, {}); }),
               HasSubstr("expected increasing stamps"));
 }
 
@@ -413,11 +404,11 @@ TEST(SensorStreams, HaveTheErrorsTheyAreMadeWith) {
   EXPECT_GT(std::abs(bias), 1e-4);
   EXPECT_LT(std::abs(bias), 0.04);
   timing.rate_hz = 0;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { synthetic_gyro(r, {}, timing, 1); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>([&] { synthetic_gyro(r, {}, timing, 1); }),
               HasSubstr("rate_hz is 0"));
   timing = {};
   timing.missing = 1;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { synthetic_camera(r, {}, timing, 1); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>([&] { synthetic_camera(r, {}, timing, 1); }),
               HasSubstr("missing is 1"));
 }
 

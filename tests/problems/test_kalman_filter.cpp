@@ -13,6 +13,7 @@
 #include "problems/fusion/robot_model.hpp"
 #include "problems/kalman/consistency.hpp"
 #include "problems/kalman/linear_model.hpp"
+#include "tests/support/data_error.hpp"
 #include "tests/support/normal.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"
@@ -40,16 +41,6 @@ Vector3d vector3(const json& j) {
 }
 Matrix3d root_of_diagonal(const Vector3d& d) {
   return d.cwiseSqrt().asDiagonal();
-}
-
-template <class Exception, class Action>
-std::string refusal(Action action) {
-  try {
-    action();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 Twist twist_of_step(const json& step, const Vector& z) {
@@ -364,31 +355,37 @@ TEST(Filter, RefusesBadInput) {
   const Vector3d zero = Vector3d::Zero();
   Matrix p = Matrix::Identity(3, 3);
   p(2, 2) = -1;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, {}, zero, p); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>([&] { PoseFilter({}, {}, zero, p); }),
               HasSubstr("initial covariance has the eigenvalue -1"));
   p << 1, 2, 0, 2, 1, 0, 0, 0, 1;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, {}, zero, p); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>([&] { PoseFilter({}, {}, zero, p); }),
               HasSubstr("eigenvalue -1"));
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, {}, zero, Matrix::Identity(4, 4)); }),
-              HasSubstr("initial covariance is 4 x 4, expected 3 rows"));
+  EXPECT_THAT(
+      testing::refusal_of<std::invalid_argument>([&] { PoseFilter({}, {}, zero, Matrix::Identity(4, 4)); }),
+      HasSubstr("initial covariance is 4 x 4, expected 3 rows"));
   const Vector3d nan = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, {}, nan, Matrix::Identity(3, 3)); }),
-              HasSubstr("not finite"));
+  EXPECT_THAT(
+      testing::refusal_of<std::invalid_argument>([&] { PoseFilter({}, {}, nan, Matrix::Identity(3, 3)); }),
+      HasSubstr("not finite"));
   KalmanOptions options;
   options.kind = FilterKind::Unscented;
   options.unscented.alpha = 1e-3;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, options, zero, Matrix::Identity(3, 3)); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>(
+                  [&] { PoseFilter({}, options, zero, Matrix::Identity(3, 3)); }),
               HasSubstr("the centre's covariance weight"));
   options.unscented.alpha = 0;
-  EXPECT_THAT(refusal<std::invalid_argument>([&] { PoseFilter({}, options, zero, Matrix::Identity(3, 3)); }),
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>(
+                  [&] { PoseFilter({}, options, zero, Matrix::Identity(3, 3)); }),
               HasSubstr("expected > 0"));
 
   PoseFilter filter({}, {}, zero, Matrix::Zero(3, 3));
-  EXPECT_THAT(refusal<std::runtime_error>([&] { filter.update(PoseSensor<3>(), zero, Matrix3d::Zero()); }),
+  EXPECT_THAT(testing::refusal_of<std::runtime_error>(
+                  [&] { filter.update(PoseSensor<3>(), zero, Matrix3d::Zero()); }),
               HasSubstr("no positive definite covariance"));
-  EXPECT_THAT(refusal<std::runtime_error>([&] { filter.update(PoseSensor<3>(), nan, Matrix3d::Identity()); }),
+  EXPECT_THAT(testing::refusal_of<std::runtime_error>(
+                  [&] { filter.update(PoseSensor<3>(), nan, Matrix3d::Identity()); }),
               HasSubstr("not finite"));
-  EXPECT_THAT(refusal<std::runtime_error>([&] {
+  EXPECT_THAT(testing::refusal_of<std::runtime_error>([&] {
                 filter.predict({std::numeric_limits<double>::infinity(), 0, 0}, Matrix3d::Identity(), 0.1);
               }),
               HasSubstr("not finite"));
@@ -396,9 +393,9 @@ TEST(Filter, RefusesBadInput) {
                             Matrix::Identity(2, 2));
   LinearSensor sensor;
   sensor.h = Matrix::Identity(1, 3);
-  EXPECT_THAT(
-      refusal<std::invalid_argument>([&] { linear.update(sensor, Vector::Zero(1), Matrix::Identity(1, 1)); }),
-      HasSubstr("H has 3 columns, expected 2"));
+  EXPECT_THAT(testing::refusal_of<std::invalid_argument>(
+                  [&] { linear.update(sensor, Vector::Zero(1), Matrix::Identity(1, 1)); }),
+              HasSubstr("H has 3 columns, expected 2"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "problems/kalman/covariance.hpp"
 #include "problems/kalman/linear_system.hpp"
 #include "problems/kalman/triangular.hpp"
+#include "tests/support/data_error.hpp"
 #include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -62,16 +63,6 @@ LinearSystem turn(const Eigen::Vector3d& w) {
   s.g = Matrix(6, 0);
   s.qc = Matrix(0, 0);
   return s;
-}
-
-template <class Action>
-std::string refusal(Action action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(LinearSystem, MatchesTheReferenceTo13Digits) {
@@ -191,37 +182,39 @@ TEST(LinearSystem, RefusesWhatDoesNotFit) {
   const LinearSystem good = constant_acceleration(1);
   LinearSystem s = good;
   s.a = Matrix::Zero(3, 2);
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("A is 3 x 2, expected a square matrix"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }),
+              HasSubstr("A is 3 x 2, expected a square matrix"));
   s = good;
   s.a = Matrix(0, 0);
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("A is 0 x 0"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("A is 0 x 0"));
   s = good;
   s.b = Matrix::Zero(2, 1);
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("B is 2 x 1, expected 3 rows"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("B is 2 x 1, expected 3 rows"));
   s = good;
   s.g = Matrix::Zero(4, 1);
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("G is 4 x 1"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("G is 4 x 1"));
   s = good;
   s.qc = Matrix::Identity(2, 2);
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("Qc is 2 x 2, expected 1 x 1"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("Qc is 2 x 2, expected 1 x 1"));
   s = good;
   s.qc(0, 0) = -0.1;
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("Qc has the eigenvalue -0.1"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("Qc has the eigenvalue -0.1"));
   s = good;
   s.a(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("A has an entry that is not finite"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }),
+              HasSubstr("A has an entry that is not finite"));
   s = good;
   s.states = {{"x", "m"}};
-  EXPECT_THAT(refusal([&] { discretise(s, 1); }), HasSubstr("1 names of states, expected 3"));
-  EXPECT_THAT(refusal([&] { discretise(good, 0); }), HasSubstr("period 0"));
-  EXPECT_THAT(refusal([&] { discretise(good, -1); }), HasSubstr("period -1"));
-  EXPECT_THAT(refusal([&] { discretise_series(good, 1, 0); }), HasSubstr("series order 0"));
-  EXPECT_THAT(refusal([&] { piecewise_constant_noise(Matrix::Zero(3, 2), Matrix::Zero(1, 1)); }),
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1); }), HasSubstr("1 names of states, expected 3"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(good, 0); }), HasSubstr("period 0"));
+  EXPECT_THAT(testing::usage_error([&] { discretise(good, -1); }), HasSubstr("period -1"));
+  EXPECT_THAT(testing::usage_error([&] { discretise_series(good, 1, 0); }), HasSubstr("series order 0"));
+  EXPECT_THAT(testing::usage_error([&] { piecewise_constant_noise(Matrix::Zero(3, 2), Matrix::Zero(1, 1)); }),
               HasSubstr("expected 2 x 2"));
   s = good;
   s.a = Matrix::Identity(3, 3);
-  EXPECT_THAT(refusal([&] { discretise(s, 1e4); }), HasSubstr("leave the range"));
-  EXPECT_EQ(refusal([&] { discretise(good, 1); }), "");
+  EXPECT_THAT(testing::usage_error([&] { discretise(s, 1e4); }), HasSubstr("leave the range"));
+  EXPECT_EQ(testing::usage_error([&] { discretise(good, 1); }), "");
 }
 
 TEST(Covariance, IsCheckedAndFactored) {
@@ -234,13 +227,14 @@ TEST(Covariance, IsCheckedAndFactored) {
   singular << 1, 2, 2, 4;
   const Matrix root = covariance_factor("P", singular);
   EXPECT_LE((root * root.transpose() - singular).cwiseAbs().maxCoeff(), 1e-14);
-  EXPECT_THAT(refusal([&] { covariance_factor("P", singular, Definiteness::Positive); }),
+  EXPECT_THAT(testing::usage_error([&] { covariance_factor("P", singular, Definiteness::Positive); }),
               HasSubstr("P has the eigenvalue"));
   p(1, 1) = 0.5;
-  EXPECT_THAT(refusal([&] { covariance_factor("P", p); }), HasSubstr("eigenvalue -0.4"));
+  EXPECT_THAT(testing::usage_error([&] { covariance_factor("P", p); }), HasSubstr("eigenvalue -0.4"));
   p(1, 0) = 2.1;
-  EXPECT_THAT(refusal([&] { covariance_factor("P", p); }), HasSubstr("not symmetric"));
-  EXPECT_THAT(refusal([&] { covariance_factor("R", Matrix::Zero(2, 3)); }), HasSubstr("R is 2 x 3"));
+  EXPECT_THAT(testing::usage_error([&] { covariance_factor("P", p); }), HasSubstr("not symmetric"));
+  EXPECT_THAT(testing::usage_error([&] { covariance_factor("R", Matrix::Zero(2, 3)); }),
+              HasSubstr("R is 2 x 3"));
 }
 
 TEST(Triangular, KeepsTheProduct) {

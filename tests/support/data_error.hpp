@@ -1,9 +1,10 @@
-// Looks at what a reader says about bad data.
+// Looks at what is said about bad data and bad usage.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,23 @@
 
 namespace odobench::testing {
 
-// The message of the DataError that action throws; empty when it throws none.
-template <class Action>
-std::string data_error(Action action) {
+// The message of the Exception that action throws; empty when it throws none.
+template <class Exception, class Action>
+std::string refusal_of(Action action) {
   try {
     action();
-  } catch (const DataError& e) {
+  } catch (const Exception& e) {
     return e.what();
   }
   return "";
+}
+template <class Action>
+std::string data_error(Action action) {
+  return refusal_of<DataError>(action);
+}
+template <class Action>
+std::string usage_error(Action action) {
+  return refusal_of<std::invalid_argument>(action);
 }
 
 // Succeeds for one line that contains every part.
