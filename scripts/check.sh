@@ -4,6 +4,8 @@
 # usage: scripts/check.sh [ROOT]        ROOT: the checkout to look at (default: this one)
 #
 #   includes   a room includes itself and what the table below gives it; paths from the root
+#   rooms      no circle of headers or rooms, no arrow upward; docs/figures/rooms.svg is that of the sources (scripts/rooms_figure.py;
+#              skipped, and said so, without python3)
 #   headers    begin with `#pragma once` (after comments)
 #   flags      no -march=native, no -ffast-math or its parts: results must not depend on the machine that built them
 #   length     no source file above 450 lines
@@ -13,7 +15,8 @@
 set -euo pipefail
 export LC_ALL=C.UTF-8
 
-cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "${1:-$here/..}"
 rooms=(base bench datasets problems reports solvers tests)
 mapfile -t sources < <(find "${rooms[@]}" \( -name '*.cpp' -o -name '*.hpp' \) -type f 2>/dev/null | sort)
 if ((${#sources[@]} == 0)); then
@@ -179,6 +182,11 @@ report() {  # report NAME VIOLATIONS
   fi
 }
 report includes "$(check_includes)"
+if command -v python3 >/dev/null; then
+  report rooms "$(python3 "$here/rooms_figure.py" --check . 2>&1 || true)"
+else
+  echo "check: rooms skipped: python3 is not installed"
+fi
 report headers "$(check_headers)"
 report flags "$(check_flags)"
 report length "$(check_length)"

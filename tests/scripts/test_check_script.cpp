@@ -111,6 +111,38 @@ TEST_P(CheckScriptViolation, FailsAndSaysWhere) {
 INSTANTIATE_TEST_SUITE_P(Planted, CheckScriptViolation, ::testing::ValuesIn(kViolations),
                          [](const auto& violation) { return violation.param.name; });
 
+TEST(CheckScript, FailsForACircleOfHeadersAndOfRooms) {
+  const MiniatureTree tree;
+  tree.write("solvers/a.hpp", "#pragma once\n#include \"solvers/b.hpp\"\n");
+  tree.write("solvers/b.hpp", "#pragma once\n");
+  ProcessResult outcome = tree.check();
+  if (outcome.out.find("rooms skipped") != std::string::npos) GTEST_SKIP() << "python3 is not installed";
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  tree.write("solvers/b.hpp", "#pragma once\n#include \"solvers/a.hpp\"\n");
+  outcome = tree.check();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out,
+              ::testing::HasSubstr("headers in a circle: solvers/a.hpp -> solvers/b.hpp -> solvers/a.hpp"));
+  tree.write("solvers/b.hpp", "#pragma once\n");
+  tree.write("reports/kinds/entropy/a.hpp", "#pragma once\n");
+  tree.write("reports/kinds/entropy/b.cpp", "#include \"reports/kinds/planning/a.hpp\"\n");
+  tree.write("reports/kinds/planning/a.hpp", "#pragma once\n");
+  EXPECT_EQ(tree.check().exit_code, 0);
+  tree.write("reports/kinds/planning/b.cpp", "#include \"reports/kinds/entropy/a.hpp\"\n");
+  outcome = tree.check();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("reports/kinds/entropy:1: includes reports/kinds/planning"));
+}
+
+TEST(CheckScript, FailsForAFigureOfOtherRooms) {
+  const MiniatureTree tree;
+  tree.write("docs/figures/rooms.svg", "<svg/>");
+  const ProcessResult outcome = tree.check();
+  if (outcome.out.find("rooms skipped") != std::string::npos) GTEST_SKIP() << "python3 is not installed";
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("docs/figures/rooms.svg:1: not that of the sources"));
+}
+
 TEST(CheckScript, FailsForALongFile) {
   const MiniatureTree tree;
   std::string text;
