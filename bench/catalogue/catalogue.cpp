@@ -59,6 +59,13 @@ void Catalogue::Problems::add(ProblemEntry entry) {
   entries.push_back(std::move(entry));
 }
 
+void Catalogue::add(ImporterEntry entry) {
+  for (const ImporterEntry& other : importers_)
+    if (other.name == entry.name)
+      throw std::logic_error(fmt::format("importer '{}' is added twice", entry.name));
+  importers_.push_back(std::move(entry));
+}
+
 Catalogue::Problems& Catalogue::complete() const {
   const std::lock_guard lock(mutex_);
   const auto later = std::exchange(problems_.later, {});
@@ -88,8 +95,19 @@ const ProblemEntry& Catalogue::problem(const std::string& name) const {
                                           did_you_mean(name, names)));
 }
 
+const ImporterEntry& Catalogue::importer(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const ImporterEntry& entry : importers_) {
+    if (entry.name == name) return entry;
+    names.push_back(entry.name);
+  }
+  throw std::invalid_argument(fmt::format("bench import '{}'{}: known sources: {}", name,
+                                          did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
 void add_known(Catalogue& catalogue) {
   add_known_solvers(catalogue.solvers_);
+  for (const ImporterEntry& importer : known_importers()) catalogue.add(importer);
   catalogue.add(calibration_entry());
   catalogue.add_later([] {
     std::vector<ProblemEntry> list;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/catalogue/importers.hpp"
 #include "bench/catalogue/problem_factory.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "solvers/registry.hpp"
@@ -41,6 +42,7 @@ class Catalogue {
   // Throw std::logic_error when there is one of this name.
   void add(SolverEntry entry);
   void add(ProblemEntry entry);
+  void add(ImporterEntry entry);
 
   // Problems that take time to list: asked for when problems are looked at first, or one is added.
   void add_later(std::function<std::vector<ProblemEntry>()> entries);
@@ -48,10 +50,12 @@ class Catalogue {
   // In the order in which they were added, which is that of lists. From any thread.
   const SolverTable& solvers() const { return solvers_; }
   const std::vector<ProblemEntry>& problems() const;
+  const std::vector<ImporterEntry>& importers() const { return importers_; }
 
   // Throw std::invalid_argument on an unknown name, with the nearest one.
   const SolverEntry& solver(const std::string& name) const { return solvers_.find(name); }
   const ProblemEntry& problem(const std::string& name) const;
+  const ImporterEntry& importer(const std::string& name) const;
 
  private:
   friend void add_known(Catalogue& catalogue);
@@ -64,6 +68,7 @@ class Catalogue {
   Problems& complete() const;  // nothing is left for later
 
   SolverTable solvers_;
+  std::vector<ImporterEntry> importers_;
   mutable std::mutex mutex_;
   mutable Problems problems_;
 };

@@ -4,29 +4,24 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
 
-#include "base/names.hpp"
 #include "base/text.hpp"
+#include "bench/catalogue/importers.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
-#include "datasets/import/csv/csv_import.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
-#include "datasets/import/optiodom/optiodom.hpp"
-#include "datasets/import/vitko2024/vitko2024.hpp"
-#include "solvers/options.hpp"
 
 namespace odobench {
 namespace {
 
 struct ImportOptions {
-  std::string source;  // name of the importer, "csv", "vitko2024", "optiodom"
+  std::string source;  // name of the importer
   std::string from;
   std::string out;
   std::string map;       // of csv: what the columns are
@@ -38,8 +33,17 @@ struct ImportOptions {
   bool json = false;  // say on standard output what was written
 };
 
+// "vitko2024 or optiodom", of those that `takes` says so.
+std::string names_of(const std::vector<ImporterEntry>& importers, const char* between,
+                     bool ImporterEntry::*takes = nullptr) {
+  std::vector<std::string> names;
+  for (const ImporterEntry& importer : importers)
+    if (takes == nullptr || importer.*takes) names.push_back(importer.name);
+  return fmt::format("{}", fmt::join(names, between));
+}
+
 void add_options(CLI::App& app, ImportOptions& o) {
-  app.add_option("source", o.source, "csv (files of your own), vitko2024 or optiodom")->required();
+  app.add_option("source", o.source, names_of(known_importers(), " or "))->required();
   app.add_option("--from", o.from,
                  "folder with the raw files; of optiodom one or several, of csv files, folders and patterns, "
                  "separated by commas")
@@ -72,42 +76,28 @@ std::vector<int> run_numbers(const std::string& list) {
   return numbers;
 }
 
-Dataset import_own(const ImportOptions& options) {
-  CsvImport imported = import_csv(comma_items(options.from), options.map);
-  if (!options.quiet)
-    for (const std::string& line : imported.report) note(line);
-  return std::move(imported.dataset);
-}
-
-Dataset import_from(const ImportOptions& options) {
-  if (options.source == "csv") return import_own(options);
-  if (options.source == "optiodom") {
-    if (options.drop_lost) throw std::invalid_argument("--drop-lost is of vitko2024 only");
-    std::vector<std::filesystem::path> folders;
-    for (const std::string& item : comma_items(options.from)) folders.emplace_back(item);
-    return import_optiodom(folders, {run_numbers(options.exclude)});
-  }
-  if (!options.exclude.empty()) throw std::invalid_argument("--exclude is of optiodom only");
-  const bool draw = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  const auto progress = [draw](int done, int total) {
-    if (draw)
+Dataset import_from(const ImportOptions& options, const ImporterEntry& importer) {
+  ImportRequest request{options.from, run_numbers(options.exclude), options.drop_lost, options.map, {}, {}};
+  if (!options.quiet) request.say = [](const std::string& line) { note(line); };
+  if (!options.quiet && ::isatty(STDERR_FILENO) == 1)
+    request.progress = [](int done, int total) {
       std::fputs(fmt::format("\r\x1b[K{}", done < total ? fmt::format("[{}/{}] recordings", done, total) : "")
                      .c_str(),
                  stderr);
-  };
-  return import_vitko2024(options.from, progress, 0, options.drop_lost);
+    };
+  return importer.read(request);
 }
 
-void check_options(const ImportOptions& o) {
-  const std::vector<std::string> sources = {"csv", "vitko2024", "optiodom"};
-  if (std::find(sources.begin(), sources.end(), o.source) == sources.end())
-    throw std::invalid_argument(fmt::format("bench import '{}'{}: known sources: {}", o.source,
-                                            did_you_mean(o.source, sources), fmt::join(sources, ", ")));
-  const bool own = o.source == "csv";
-  if (!own && o.propose) throw std::invalid_argument("--propose is of csv only");
-  if (!own && !o.map.empty()) throw std::invalid_argument("--map is of csv only");
-  if (own && o.drop_lost) throw std::invalid_argument("--drop-lost is of vitko2024 only");
-  if (own && !o.exclude.empty()) throw std::invalid_argument("--exclude is of optiodom only");
+// `importers`: for the names of those that take an option that this one does not.
+void check_options(const ImportOptions& o, const ImporterEntry& importer,
+                   const std::vector<ImporterEntry>& importers) {
+  const auto only = [&](const char* option, bool ImporterEntry::*takes) {
+    return std::invalid_argument(fmt::format("{} is of {} only", option, names_of(importers, ", ", takes)));
+  };
+  if (o.propose && !importer.maps) throw only("--propose", &ImporterEntry::maps);
+  if (!o.map.empty() && !importer.maps) throw only("--map", &ImporterEntry::maps);
+  if (o.drop_lost && !importer.drops_lost) throw only("--drop-lost", &ImporterEntry::drops_lost);
+  if (!o.exclude.empty() && !importer.excludes) throw only("--exclude", &ImporterEntry::excludes);
   if (o.propose) {
     for (const auto& [given, option] : {std::pair{!o.map.empty(), "--map"},
                                         {!o.out.empty(), "--out"},
@@ -116,7 +106,7 @@ void check_options(const ImportOptions& o) {
       if (given) throw std::invalid_argument(fmt::format("--propose prints a map; leave out {}", option));
     return;
   }
-  if (own && o.map.empty())
+  if (importer.maps && o.map.empty())
     throw std::invalid_argument(
         "import csv needs --map=MAP.JSON, which says what robot it is and what the columns are; "
         "`bench import csv --from=... --propose > map.json` makes one to fill in (docs/import.md)");
@@ -131,11 +121,12 @@ ExitCode propose(const ImportOptions& options) {
   return ExitCode::Success;
 }
 
-ExitCode import_command(const ImportOptions& options) {
-  check_options(options);
+ExitCode import_command(const ImportOptions& options, const Catalogue& catalogue) {
+  const ImporterEntry& importer = catalogue.importer(options.source);
+  check_options(options, importer, catalogue.importers());
   if (options.propose) return propose(options);
   require_writable(options.out, existing_files(options.overwrite));
-  const Dataset dataset = import_from(options);
+  const Dataset dataset = import_from(options, importer);
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
   save_announced(dataset, options.out, options.overwrite, options.json);

@@ -84,6 +84,22 @@ TEST(Catalogue, ProblemsByPattern) {
   EXPECT_NE(refusal([&] { resolve_problems(known(), {"nowhere:*"}, 0, notes); }), "");
 }
 
+TEST(Catalogue, ImportersByName) {
+  Catalogue catalogue;
+  add_known(catalogue);
+  EXPECT_THAT(refusal([&] { catalogue.importer("optiodon"); }),
+              HasSubstr("did you mean 'optiodom'?: known sources: vitko2024, optiodom"));
+  catalogue.add(ImporterEntry{"mine", true, false, [](const ImportRequest& request) {
+                                Dataset set;
+                                set.name = request.from;
+                                return set;
+                              }});
+  EXPECT_EQ(catalogue.importer("mine").read({"folder", {}, false, {}}).name, "folder");
+  EXPECT_THAT(refusal([&] { catalogue.importer("x"); }),
+              HasSubstr("known sources: vitko2024, optiodom, mine"));
+  EXPECT_THROW(catalogue.add(ImporterEntry{"mine", false, false, nullptr}), std::logic_error);
+}
+
 TEST(Catalogue, ABoxIsNamesUnitsAndBounds) {
   std::vector<ParameterInfo> box{{"a", "m", 1, 0, 2}, {"b", "rad", 0, -1, 1}};
   const std::string sum = box_check_sum(box);
