@@ -88,7 +88,7 @@ TEST(Catalogue, ImportersByName) {
   Catalogue catalogue;
   add_known(catalogue);
   EXPECT_THAT(refusal([&] { catalogue.importer("optiodon"); }),
-              HasSubstr("did you mean 'optiodom'?: known sources: vitko2024, optiodom"));
+              HasSubstr("did you mean 'optiodom'?: known sources: csv, vitko2024, optiodom"));
   catalogue.add(ImporterEntry{"mine", true, false, [](const ImportRequest& request) {
                                 Dataset set;
                                 set.name = request.from;
@@ -96,7 +96,7 @@ TEST(Catalogue, ImportersByName) {
                               }});
   EXPECT_EQ(catalogue.importer("mine").read({"folder", {}, false, {}}).name, "folder");
   EXPECT_THAT(refusal([&] { catalogue.importer("x"); }),
-              HasSubstr("known sources: vitko2024, optiodom, mine"));
+              HasSubstr("known sources: csv, vitko2024, optiodom, mine"));
   EXPECT_THROW(catalogue.add(ImporterEntry{"mine", false, false, nullptr}), std::logic_error);
 }
 
