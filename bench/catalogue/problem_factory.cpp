@@ -66,18 +66,6 @@ void remark_on_mean(const Robot& robot, std::vector<std::string>& remarks) {
       centre.norm(), spread));
 }
 
-CalibrationOptions options_of(const Robot& robot, const CalibrationChoice& choice) {
-  CalibrationOptions options;
-  options.cost = choice.cost.value_or(CostKind::EverySample);
-  options.rule = choice.rule.value_or(robot.rule);
-  options.position_weight = choice.position_weight;
-  options.heading_weight = choice.heading_weight;
-  options.distance = choice.distance;
-  options.mount = choice.mount;
-  options.from_origin = robot.kinematics == "4wis4wid";
-  return options;
-}
-
 // "[segments,arc]": what a problem's name has to say, so that J of different kinds never meet in a table.
 std::string variant_of(const CalibrationProblem& problem, const Robot& robot) {
   if (problem.structured()) return "";
@@ -90,6 +78,18 @@ std::string variant_of(const CalibrationProblem& problem, const Robot& robot) {
 
 }  // namespace
 
+CalibrationOptions calibration_options(const Robot& robot, const CalibrationChoice& choice) {
+  CalibrationOptions options;
+  options.cost = choice.cost.value_or(CostKind::EverySample);
+  options.rule = choice.rule.value_or(robot.rule);
+  options.position_weight = choice.position_weight;
+  options.heading_weight = choice.heading_weight;
+  options.distance = choice.distance;
+  options.mount = choice.mount;
+  options.from_origin = robot.kinematics == "4wis4wid";
+  return options;
+}
+
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
                                const CalibrationChoice& choice) {
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
@@ -101,7 +101,7 @@ LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
   try {
     if (dataset.robot.table.rule == TwistRule::Mean) remark_on_mean(dataset.robot, remarks);
     model = std::make_shared<const CalibrationProblem>(dataset.robot, std::move(dataset.recordings),
-                                                       options_of(dataset.robot, choice), kernel);
+                                                       calibration_options(dataset.robot, choice), kernel);
   } catch (const std::invalid_argument& error) {  // what is wrong with the set is no usage error
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }

@@ -38,6 +38,9 @@ struct CalibrationChoice {
   bool mount = false;
 };
 
+// The options of a calibration of this robot: its rule, its start, what the choice says.
+CalibrationOptions calibration_options(const Robot& robot, const CalibrationChoice& choice = {});
+
 // `data`: path of set.json, "" for the demo set. Throws DataError on a bad set, std::invalid_argument on a
 // choice that the robot of the set does not allow.
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,

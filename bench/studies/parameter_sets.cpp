@@ -19,16 +19,29 @@ namespace {
 
 using Json = nlohmann::json;
 
-ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& parameters,
-                         const std::string& where, std::string label) {
+// "; differential has b, r_right, r_left: parameters of another robot are not judged on it".
+std::string own_names(const ParameterNames& of, const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return fmt::format("; {} has {}: parameters of another robot are not judged on it",
+                     of.robot == kOwnWheels ? "the robot" : of.robot, list);
+}
+
+ParameterSet from_object(const Json& object, const ParameterNames& of, const std::string& where,
+                         std::string label) {
+  const std::vector<ParameterInfo>& parameters = of.parameters;
   if (!object.is_object())
     throw DataError(fmt::format("{}: found {}, expected an object of parameters", where, object.type_name()));
   std::vector<std::string> names;
   for (const ParameterInfo& p : parameters) names.push_back(p.name);
+  const std::string others = of.robot.empty() ? "" : own_names(of, names);
   for (const auto& [key, value] : object.items()) {
     if (key == "name" && value.is_string()) {
       label = value.get<std::string>();
     } else if (std::find(names.begin(), names.end(), key) == names.end()) {
+      if (!others.empty())
+        throw DataError(
+            fmt::format("{}: unknown key '{}'{}{}", where, key, did_you_mean(key, names), others));
       throw DataError(fmt::format("{}: unknown key '{}'{}; expected {} .. {} and, if you like, a text 'name'",
                                   where, key, did_you_mean(key, names), names.front(), names.back()));
     }
@@ -36,7 +49,7 @@ ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& p
   Vector values(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto entry = object.find(names[i]);
-    if (entry == object.end()) throw DataError(fmt::format("{}: '{}' is missing", where, names[i]));
+    if (entry == object.end()) throw DataError(fmt::format("{}: '{}' is missing{}", where, names[i], others));
     if (!entry->is_number() || !in_range(entry->get<double>()))
       throw DataError(fmt::format("{}: '{}' is {}, expected a number of at most {:g} in size", where,
                                   names[i], entry->dump(), kLargestNumber));
@@ -45,13 +58,13 @@ ParameterSet from_object(const Json& object, const std::vector<ParameterInfo>& p
   return {label, values};
 }
 
-std::vector<ParameterSet> from_file(const std::vector<ParameterInfo>& parameters, const std::string& file) {
+std::vector<ParameterSet> from_file(const ParameterNames& of, const std::string& file) {
   const Json root = parse_json(read_file(file), file);
   const std::string stem = std::filesystem::path(file).stem().string();
-  if (!root.is_array()) return {from_object(root, parameters, file, stem)};
+  if (!root.is_array()) return {from_object(root, of, file, stem)};
   std::vector<ParameterSet> sets;
   for (std::size_t i = 0; i < root.size(); ++i)
-    sets.push_back(from_object(root[i], parameters, fmt::format("{}: entry {}", file, i + 1),
+    sets.push_back(from_object(root[i], of, fmt::format("{}: entry {}", file, i + 1),
                                fmt::format("{} {}", stem, i + 1)));
   if (sets.empty())
     throw DataError(fmt::format("{}: an empty array, expected at least one object of parameters", file));
@@ -75,10 +88,13 @@ std::vector<std::string> split_sources(const std::vector<std::string>& lists) {
 ParameterNames parameter_names(const LoadedProblem& loaded) {
   ParameterNames names{loaded.problem.parameters(), {}};
   if (loaded.dataset) names.known = loaded.dataset->known_parameters;
+  if (loaded.dataset && loaded.dataset->robot.kinematics != "4wis4wid")
+    names.robot = loaded.dataset->robot.kinematics;
   return names;
 }
 
-std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source) {
+std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source,
+                                          const char* option) {
   const auto count = static_cast<Eigen::Index>(names.parameters.size());
   std::vector<std::string> known = {"nominal"};
   if (source == "nominal") {
@@ -91,12 +107,11 @@ std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std
     if (set.name == source) return {{source, Eigen::Map<const Vector>(set.values.data(), count)}};
     known.push_back(set.name);
   }
-  if (std::filesystem::exists(source)) return from_file(names.parameters, source);
+  if (std::filesystem::exists(source)) return from_file(names, source);
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-  throw std::invalid_argument(
-      fmt::format("--parameters={}: neither a file nor a name this data set knows{}; known: {}", source,
-                  did_you_mean(source, known), list));
+  throw std::invalid_argument(fmt::format("{}={}: neither a file nor a name this data set knows{}; known: {}",
+                                          option, source, did_you_mean(source, known), list));
 }
 
 void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher) {

@@ -18,6 +18,7 @@ struct ParameterSet {
 struct ParameterNames {
   std::vector<ParameterInfo> parameters;
   std::vector<NamedParameters> known;
+  std::string robot = {};  // class, for what is said of names that are not its own; "": nothing
 };
 ParameterNames parameter_names(const LoadedProblem& loaded);
 
@@ -26,7 +27,8 @@ ParameterNames parameter_names(const LoadedProblem& loaded);
 // "name" is optional and becomes the label, else the file's stem with a number behind it in an array. Throws
 // std::invalid_argument on a name that is neither (lists the known ones), DataError naming file and key on a
 // file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
-std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source);
+std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source,
+                                          const char* option = "--parameters");
 
 // Warns where the set's parameters lie outside the box.
 void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher& watcher);

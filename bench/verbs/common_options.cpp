@@ -130,8 +130,21 @@ void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads) {
 
 CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario) {
   return app.add_option(name, scenario, "file or name; 'bench list scenarios' shows them")
-      ->required()
       ->type_name("FILE|NAME");
+}
+
+CLI::Option* add_robot(CLI::App& app, std::string& robot) {
+  return app
+      .add_option(
+          "--robot", robot,
+          "instead of a scenario: a set.json, a robot alone as JSON, or a class, see 'bench list robots'")
+      ->type_name("FILE|CLASS");
+}
+
+void require_one(const std::string& scenario, const std::string& robot) {
+  if (scenario.empty() && robot.empty()) throw std::invalid_argument("--scenario or --robot is required");
+  if (!scenario.empty() && !robot.empty())
+    throw std::invalid_argument("--robot: contradictory options: a scenario has a robot of its own");
 }
 
 void apply_config(CLI::App& app, const std::string& config) {

@@ -47,6 +47,10 @@ void add_run_folder(CLI::App& app, std::string& out, bool& overwrite);
 // --seed and --threads of simulated drives.
 void add_noise_options(CLI::App& app, std::uint64_t& seed, int& threads);
 CLI::Option* add_scenario(CLI::App& app, const std::string& name, std::string& scenario);
+// --robot of verbs that have --scenario, too; require_one() throws std::invalid_argument unless one of them
+// is given.
+CLI::Option* add_robot(CLI::App& app, std::string& robot);
+void require_one(const std::string& scenario, const std::string& robot);
 
 // Sets what the configuration file says and the command line, parsed before, does not. Throws
 // std::invalid_argument "file:line: ..." on unknown keys and bad values.

@@ -7,6 +7,7 @@
 
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/catalogue/robots.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
 #include "datasets/robots/layouts.hpp"
@@ -38,12 +39,6 @@ void add_options(CLI::App& app, DemoOptions& o) {
       ->type_name("N");
   app.add_flag("--overwrite", o.overwrite, "replace a data set that is there");
   add_json(app, o.json);
-}
-
-// Short names that people type.
-std::string robot_class(const std::string& typed) {
-  if (typed == "diff") return "differential";
-  return typed;
 }
 
 ExitCode demo_command(const DemoOptions& options) {

@@ -20,7 +20,7 @@ struct PlanOptions {
 };
 
 void add_options(CLI::App& app, PlanOptions& o) {
-  add_scenario(app, "--robot", o.study.robot);
+  add_scenario(app, "--robot", o.study.robot)->required();
   app.add_option("--drives", o.study.drives,
                  "drives, a name once per time it is driven, or 'none'; a comma list [those of the scenario]")
       ->type_name("LIST")

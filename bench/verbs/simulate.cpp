@@ -9,11 +9,13 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/sha256.hpp"
+#include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/studies/planning/robot_drives.hpp"
 #include "bench/studies/work_size.hpp"
 #include "bench/verbs/common_options.hpp"
 #include "bench/verbs/written_files.hpp"
@@ -24,9 +26,11 @@ namespace odobench {
 namespace {
 
 struct SimulateOptions {
-  std::string scenario;  // file or name
+  std::string scenario;   // file or name
+  RobotSimulation study;  // of a robot without a scenario
   std::string out;
   std::uint64_t seed = 1;
+  std::optional<int> repeat;
   bool raw = false;           // the published CSV format instead of a data set
   bool as_published = false;  // dynamics without the corrections
   int threads = 0;            // 0: one per core
@@ -37,6 +41,17 @@ struct SimulateOptions {
 
 void add_options(CLI::App& app, SimulateOptions& o) {
   add_scenario(app, "--scenario", o.scenario);
+  add_robot(app, o.study.robot);
+  app.add_option("--parameters", o.study.parameters,
+                 "of --robot: the true ones, a name that its set knows or a JSON file [nominal]")
+      ->type_name("NAME|FILE");
+  app.add_option("--drives", o.study.drives,
+                 "of --robot: names or 'all'; a comma list [squares, circles, lines]")
+      ->type_name("LIST")
+      ->allow_extra_args(false);
+  add_value(app, "--repeat", "N", "of --robot: recordings of each drive [3]", [&o](const std::string& text) {
+    o.repeat = static_cast<int>(whole_number("--repeat", text, 1, 10000));
+  });
   app.add_option("--out", o.out, "folder to write")->required()->type_name("DIR");
   add_noise_options(app, o.seed, o.threads);
   app.add_flag("--raw", o.raw, "raw CSV files as published, for 'bench import vitko2024'");
@@ -164,7 +179,31 @@ void write_dynamics(DynamicsScenario s, const SimulateOptions& o) {
   if (o.json) print_tables({written_table(written)}, Format::Json);
 }
 
+void write_robot_drives(const SimulateOptions& o) {
+  for (const auto& [given, name] : {std::pair(o.raw, "--raw"), std::pair(o.as_published, "--as-published")})
+    if (given) throw std::invalid_argument(fmt::format("{}: it belongs to scenarios", name));
+  const fs::path set_json = fs::path(o.out) / "set.json";
+  require_writable(set_json, existing_files(o.overwrite));
+  RobotSimulation study = o.study;
+  study.repeat = o.repeat.value_or(study.repeat);
+  study.seed = o.seed;
+  study.threads = o.threads;
+  TerminalWatcher watcher(o.quiet);
+  const Dataset dataset = simulate_robot(study, watcher, InterruptGuard::stop());
+  save_announced(dataset, set_json, o.overwrite, o.json, o.quiet);
+}
+
 ExitCode simulate_command(const SimulateOptions& options) {
+  require_one(options.scenario, options.study.robot);
+  if (!options.study.robot.empty()) {
+    write_robot_drives(options);
+    return ExitCode::Success;
+  }
+  for (const auto& [given, name] : {std::pair(!options.study.parameters.empty(), "--parameters"),
+                                    std::pair(!options.study.drives.empty(), "--drives"),
+                                    std::pair(options.repeat.has_value(), "--repeat")})
+    if (given)
+      throw std::invalid_argument(fmt::format("{}: it belongs to --robot; a scenario states its own", name));
   Scenario scenario = load_scenario(options.scenario);
   if (const auto* recordings = std::get_if<simulate::RecordingScenario>(&scenario))
     write_recordings(*recordings, options);

@@ -19,7 +19,7 @@ struct VerifyOptions {
 };
 
 void add_options(CLI::App& app, VerifyOptions& o) {
-  add_scenario(app, "--scenario", o.study.scenario);
+  add_scenario(app, "--scenario", o.study.scenario)->required();
   app.add_option("--parameters", o.study.parameters,
                  "JSON files, 'nominal', 'truth' or 'believed'; a comma list, may be given again")
       ->required()

@@ -40,7 +40,8 @@ Table dataset_table(const Dataset& dataset) {
           dataset.notes};
 }
 
-void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json) {
+void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json,
+                    bool quiet) {
   InterruptGuard::remember();
   FileTransaction transaction(existing_files(overwrite));
   add_dataset(dataset, set, transaction, false, InterruptGuard::stop());
@@ -48,7 +49,8 @@ void save_announced(const Dataset& dataset, const std::filesystem::path& set, bo
   transaction.commit();
   std::size_t samples = 0;
   for (const Recording& r : dataset.recordings) samples += r.size();
-  note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
+  if (!quiet)
+    note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
   if (json) print_tables({dataset_table(dataset), written_table(files)}, Format::Json);
 }
 

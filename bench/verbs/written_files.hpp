@@ -17,7 +17,9 @@ Table written_table(const std::vector<std::filesystem::path>& files);
 // "dataset": one row of name, counts and duration.
 Table dataset_table(const Dataset& dataset);
 
-// Writes a data set and says so: a line on standard error, with `json` the table of files on standard output.
-void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json);
+// Writes a data set and says so: a line on standard error (unless `quiet`), with `json` the table of files on
+// standard output.
+void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json,
+                    bool quiet = false);
 
 }  // namespace odobench

@@ -52,8 +52,13 @@ void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recor
   check_recordings(recordings);
 }
 
-// The structured form knows one robot, by its class and names, one rule and one cost.
-bool structured_form_fits(const Robot& robot, const CalibrationOptions& options) {
+// The structured form knows one robot, by its class and names, one rule and one cost, and speeds: increments
+// are another thing.
+bool structured_form_fits(const Robot& robot, const CalibrationOptions& options,
+                          const std::vector<Recording>& recordings) {
+  for (const Recording& r : recordings)
+    for (const Signal& s : r.signals)
+      if (s.kind == SignalKind::Increment) return false;
   if (robot.kinematics != "4wis4wid" || robot.table.rule != TwistRule::Mean || !options.as_in_thesis())
     return false;
   return robot.parameters.size() == static_cast<std::size_t>(kCalibrationParameters);
@@ -84,7 +89,7 @@ CalibrationProblem::CalibrationProblem(std::vector<ParameterInfo> parameters,
 CalibrationProblem::CalibrationProblem(const Robot& robot, std::vector<Recording> recordings,
                                        const CalibrationOptions& options, InstructionSet kernel)
     : parameters_(robot.parameters), recordings_(std::move(recordings)), options_(options), kernel_(kernel) {
-  if (structured_form_fits(robot, options)) {
+  if (structured_form_fits(robot, options, recordings_)) {
     check(parameters_, recordings_);
     structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
   } else {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -87,12 +88,122 @@ std::string words(const Vector& q, const std::vector<ParameterInfo>& parameters)
 
 }  // namespace
 
+namespace {
+
+// H and g of one recording in relative parameters, of those that are free.
+class RobotEquations {
+ public:
+  RobotEquations(const Robot& robot, const CalibrationOptions& options, InstructionSet kernel)
+      : robot_(robot), options_(options), kernel_(kernel), scale_(scales_of(free_parameters(robot))) {
+    for (std::size_t i = 0; i < robot.parameters.size(); ++i)
+      if (robot.parameters[i].lower < robot.parameters[i].upper)
+        free_.push_back(static_cast<Eigen::Index>(i));
+  }
+  Eigen::Index count() const { return scale_.size(); }
+  Eigen::Index residuals() const { return residuals_; }
+  double cost() const { return cost_; }
+  // Counts residuals and cost, too.
+  void at(const Recording& recording, const Vector& z, Matrix& normal, Vector& score) {
+    const CalibrationProblem problem(robot_, {recording}, options_, kernel_);
+    NormalEquations e;
+    problem.normal_equations(z, e);
+    residuals_ += problem.residual_count();
+    cost_ += problem.cost(z);
+    normal.resize(count(), count());
+    score.resize(count());
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      const auto row = free_[static_cast<std::size_t>(i)];
+      score[i] = scale_[i] * e.jtr[row];
+      for (Eigen::Index k = 0; k < count(); ++k)
+        normal(i, k) = scale_[i] * e.jtj(row, free_[static_cast<std::size_t>(k)]) * scale_[k];
+    }
+  }
+
+ private:
+  const Robot& robot_;
+  const CalibrationOptions& options_;
+  InstructionSet kernel_;
+  Vector scale_;
+  std::vector<Eigen::Index> free_;
+  Eigen::Index residuals_ = 0;
+  double cost_ = 0;
+};
+
+void require_replicas(const std::string& name, std::size_t replicas) {
+  if (replicas < 2)
+    throw std::invalid_argument(
+        fmt::format("planning: drive '{}' has {} replicas, expected at least 2", name, replicas));
+}
+
+}  // namespace
+
+std::vector<ParameterInfo> free_parameters(const Robot& robot) {
+  std::vector<ParameterInfo> list;
+  for (const RobotParameter& p : robot.parameters)
+    if (p.lower < p.upper) list.push_back({p.name, p.unit, p.nominal, p.lower, p.upper});
+  return list;
+}
+
+DriveInformation drive_information(const std::string& name, const Robot& robot,
+                                   const CalibrationOptions& options, const std::vector<Recording>& replicas,
+                                   const Vector& truth, InstructionSet kernel) {
+  require_replicas(name, replicas.size());
+  RobotEquations equations(robot, options, kernel);
+  const Eigen::Index n = equations.count();
+  const auto count = static_cast<double>(replicas.size());
+  DriveInformation d{name, Matrix::Zero(n, n), Vector::Zero(n), Matrix::Zero(n, n)};
+  Matrix scores(n, static_cast<Eigen::Index>(replicas.size())), normal;
+  Vector score;
+  for (std::size_t k = 0; k < replicas.size(); ++k) {
+    equations.at(replicas[k], truth, normal, score);
+    d.normal += normal / count;
+    scores.col(static_cast<Eigen::Index>(k)) = score;
+  }
+  d.bias = scores.rowwise().mean();
+  const Matrix deviations = scores.colwise() - d.bias;
+  d.scatter = deviations * deviations.transpose() / (count - 1);
+  return d;
+}
+
+RecordedInformation recorded_information(const std::vector<std::string>& names, const Robot& robot,
+                                         const CalibrationOptions& options,
+                                         const std::vector<Recording>& recordings, const Vector& fit,
+                                         InstructionSet kernel) {
+  RobotEquations equations(robot, options, kernel);
+  const Eigen::Index n = equations.count();
+  RecordedInformation all;
+  std::vector<double> counts(names.size(), 0.0);
+  for (const std::string& name : names)
+    all.drives.push_back({name, Matrix::Zero(n, n), Vector::Zero(n), Matrix::Zero(n, n)});
+  Matrix normal;
+  Vector score;
+  for (const Recording& r : recordings) {
+    const auto i =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), r.trajectory) - names.begin());
+    if (i == names.size())
+      throw std::invalid_argument(fmt::format("planning: recording '{}' is of no trajectory", r.id));
+    equations.at(r, fit, normal, score);
+    all.drives[i].normal += normal;
+    all.drives[i].scatter += score * score.transpose();
+    ++counts[i];
+  }
+  const auto total = static_cast<double>(recordings.size());
+  all.by_recording = total >= static_cast<double>(n) + 2;
+  const double left = static_cast<double>(equations.residuals() - n);
+  const double variance = equations.cost() / std::max(left, 1.0);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    DriveInformation& d = all.drives[i];
+    if (counts[i] > 0) d.normal /= counts[i];
+    if (all.by_recording && counts[i] > 0) d.scatter *= total / (total - 1) / counts[i];
+    if (!all.by_recording) d.scatter = variance * d.normal;
+  }
+  return all;
+}
+
 DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
                                    const std::vector<Recording>& replicas, const Vector& truth,
                                    InstructionSet kernel) {
-  if (replicas.size() < 2)
-    throw std::invalid_argument(
-        fmt::format("planning: drive '{}' has {} replicas, expected at least 2", name, replicas.size()));
+  require_replicas(name, replicas.size());
   const Vector scale = scales_of(parameters);
   const Eigen::Index n = scale.size();
   DriveInformation d{name, Matrix::Zero(n, n), Vector::Zero(n), Matrix::Zero(n, n)};

@@ -7,7 +7,7 @@
 //     C = sum n_d V_d + m m',   m = sum n_d b_d,   b_d = mean of g,   V_d = its covariance
 // (linear theory of the unweighted least squares that a calibration minimises; bounds ignored). V and b come
 // from replicas of the drive with other noise, so that everything the sensors do is in them: capture noise,
-// jitter, lost messages, quanta, a start pose that is not quite zero, and what no twelve parameters explain.
+// jitter, lost messages, quanta, a start pose that is not quite zero, and what no parameters explain.
 #pragma once
 
 #include <span>
@@ -21,9 +21,9 @@ namespace odobench {
 
 struct DriveInformation {
   std::string name;
-  Matrix normal;   // H, mean over the replicas (12 x 12)
-  Vector bias;     // b (12)
-  Matrix scatter;  // V (12 x 12)
+  Matrix normal;   // H, mean over the replicas (n x n)
+  Vector bias;     // b (n)
+  Matrix scatter;  // V (n x n)
 };
 
 // From at least two replicas of one drive. `truth`: the parameters they were made with. Throws
@@ -31,6 +31,27 @@ struct DriveInformation {
 DriveInformation drive_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
                                    const std::vector<Recording>& replicas, const Vector& truth,
                                    InstructionSet kernel = widest_instruction_set());
+// The same for any robot and cost: parameters that are held fixed (lower = upper) are left out, so that there
+// are as many as free_parameters() has. `truth`: all of them.
+DriveInformation drive_information(const std::string& name, const Robot& robot,
+                                   const CalibrationOptions& options, const std::vector<Recording>& replicas,
+                                   const Vector& truth, InstructionSet kernel = widest_instruction_set());
+std::vector<ParameterInfo> free_parameters(const Robot& robot);
+
+// What recordings tell that were made already, by trajectory in the order of `names`. `fit`: the parameters
+// at which they are explained best. V is the mean of g g' over the recordings of a trajectory, times R / (R -
+// 1) of all R recordings, and b = 0, since G vanishes at the fit; with fewer than two more recordings than
+// parameters V would have gaps, and is sigma^2 H with sigma^2 = J / (residuals - parameters) instead, which
+// takes all residuals as independent and is too sure.
+struct RecordedInformation {
+  std::vector<DriveInformation> drives;
+  bool by_recording = true;
+};
+RecordedInformation recorded_information(const std::vector<std::string>& names, const Robot& robot,
+                                         const CalibrationOptions& options,
+                                         const std::vector<Recording>& recordings, const Vector& fit,
+                                         InstructionSet kernel = widest_instruction_set());
+
 // From one recording without noise, as if every pose component had white noise of this standard deviation (m,
 // rad).
 DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
@@ -48,7 +69,7 @@ struct PlanAnalysis {
   Vector standard_deviations;         // relative, of each parameter; infinite when undetermined
   std::vector<Direction> directions;  // best determined first
   // A basis of the directions whose standard deviation exceeds `wanted`, with as few parameters in each as
-  // elimination finds, largest entry 1, in q (12 x count).
+  // elimination finds, largest entry 1, in q (n x count).
   Matrix undetermined;
   std::vector<std::string> undetermined_words;  // the same: "a1 against a2": one larger in size, the other
   // smaller changes nothing

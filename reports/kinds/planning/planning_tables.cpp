@@ -30,6 +30,16 @@ double wanted_of(const RunRecord& record) {
   return record.measures.value("wanted").value_or(0);
 }
 
+// What a thousandth of the unit is called.
+const char* thousandth(const std::string& unit) {
+  return unit == "m" ? "mm" : unit == "rad" ? "mrad" : "1e-3";
+}
+
+// What relative deviations are relative to.
+double scale_of(const ParameterValue& p) {
+  return p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
+}
+
 Table parameters_table(const RunRecord& record) {
   Table t{"plan.parameters",
           "What these drives tell about each parameter",
@@ -37,6 +47,13 @@ Table parameters_table(const RunRecord& record) {
            number_column("absolute_deviation", "absolute deviation", "mm"), text_column("determined")},
           {},
           {}};
+  const auto metres = [](const ParameterValue& p) { return p.unit == "m"; };
+  const auto zero = [](const ParameterValue& p) { return p.nominal == 0; };
+  const bool lengths = std::all_of(record.parameters.begin(), record.parameters.end(), metres);
+  if (!lengths) {
+    t.columns[2] = number_column("absolute_deviation", "absolute deviation");
+    t.columns.insert(t.columns.begin() + 3, text_column("unit"));
+  }
   const double wanted = wanted_of(record);
   const std::vector<double>* deviations = series_of(record, "standard_deviations", record.parameters.size());
   const std::size_t stated = deviations == nullptr ? 0 : deviations->size();
@@ -47,13 +64,17 @@ Table parameters_table(const RunRecord& record) {
     count += determined;
     t.rows.push_back(
         {text_cell(record.parameters[i].name), percent(sd),
-         std::isfinite(sd) ? significant_cell(1000 * sd * std::abs(record.parameters[i].nominal), 3) : Cell{},
+         std::isfinite(sd) ? significant_cell(1000 * sd * scale_of(record.parameters[i]), 3) : Cell{},
          text_cell(determined ? "yes" : "no")});
+    if (!lengths)
+      t.rows.back().insert(t.rows.back().begin() + 3, text_cell(thousandth(record.parameters[i].unit)));
   }
   t.notes.push_back(
       fmt::format("Standard deviation of a calibration by least squares, from simulated noise; determined: "
                   "at most {:g} %; {} of {}.",
                   100 * wanted, count, stated));
+  if (std::any_of(record.parameters.begin(), record.parameters.end(), zero))
+    t.notes.push_back("Deviations of parameters whose nominal value is 0 are in % of half their box.");
   for (const std::string& note : record.notes)
     if (note.rfind(kUndeterminedNote, 0) != 0 && note.rfind(kProposedNote, 0) != 0)
       t.notes.push_back(note + ".");
@@ -121,7 +142,9 @@ Table proposals_table(const RunRecord& record) {
       t.rows.push_back(
           {text_cell(fmt::format("{}", k + 1)), text_cell(drives[k]), percent((*deviations)[k])});
   const bool met = deviations != nullptr && !deviations->empty() && deviations->back() <= wanted;
-  if (t.rows.empty())
+  if (!noted(record, kNoCandidateNote).empty())
+    t.notes.push_back("Nothing is proposed, since no candidate tells everything.");
+  else if (t.rows.empty())
     t.notes.push_back(fmt::format("Nothing to add: {:g} % is met.", 100 * wanted));
   else
     t.notes.push_back(met ? fmt::format("With these every parameter is known to {:g} %.", 100 * wanted)
@@ -136,7 +159,8 @@ std::vector<Table> planning_tables(const RunRecord& record, bool proposals) {
   std::vector<Table> tables{parameters_table(record), directions_table(record)};
   if (Table undetermined = undetermined_table(record); !undetermined.rows.empty())
     tables.push_back(std::move(undetermined));
-  if (Table list = proposals_table(record); proposals || !list.rows.empty())
+  if (Table list = proposals_table(record);
+      proposals || !list.rows.empty() || !noted(record, kNoCandidateNote).empty())
     tables.push_back(std::move(list));
   return tables;
 }

@@ -22,6 +22,8 @@ namespace odobench {
 inline constexpr const char* kPlanningProblem = "planning";
 inline constexpr const char* kUndeterminedNote = "undetermined: ";
 inline constexpr const char* kProposedNote = "proposed: ";
+// Begins the remark on combinations for which nothing can be proposed.
+inline constexpr const char* kNoCandidateNote = "No candidate tells ";
 
 // plan.parameters, plan.directions, plan.undetermined where something is, plan.proposals where they were
 // asked for (`proposals`, or the record has some).
