@@ -14,7 +14,7 @@ struct ImportRequest {
   std::string from;  // as the user says it
   std::vector<int> exclude;
   bool drop_lost = false;
-  std::string map;  // file that says what the columns are
+  std::string map;                                    // file that says what the columns are
   std::function<void(int done, int total)> progress;  // may be empty
   std::function<void(const std::string&)> say;        // remarks on what was read; may be empty
 };

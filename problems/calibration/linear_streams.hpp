@@ -12,8 +12,8 @@
 
 #include "problems/calibration/kernel.hpp"
 #include "problems/instruction_set.hpp"
+#include "problems/matrices.hpp"
 #include "problems/robots/integration.hpp"
-#include "problems/robots/matrices.hpp"
 
 namespace odobench {
 
