@@ -89,15 +89,20 @@ TEST(Catalogue, ImportersByName) {
   add_known(catalogue);
   EXPECT_THAT(refusal([&] { catalogue.importer("optiodon"); }),
               HasSubstr("did you mean 'optiodom'?: known sources: csv, vitko2024, optiodom"));
-  catalogue.add(ImporterEntry{"mine", true, false, [](const ImportRequest& request) {
-                                Dataset set;
-                                set.name = request.from;
-                                return set;
-                              }});
-  EXPECT_EQ(catalogue.importer("mine").read({"folder", {}, false, {}}).name, "folder");
+  ImporterEntry mine;
+  mine.name = "mine";
+  mine.read = [](const ImportRequest& request) {
+    Dataset set;
+    set.name = request.from;
+    return set;
+  };
+  catalogue.add(mine);
+  ImportRequest request;
+  request.from = "folder";
+  EXPECT_EQ(catalogue.importer("mine").read(request).name, "folder");
   EXPECT_THAT(refusal([&] { catalogue.importer("x"); }),
               HasSubstr("known sources: csv, vitko2024, optiodom, mine"));
-  EXPECT_THROW(catalogue.add(ImporterEntry{"mine", false, false, nullptr}), std::logic_error);
+  EXPECT_THROW(catalogue.add(mine), std::logic_error);
 }
 
 TEST(Catalogue, ABoxIsNamesUnitsAndBounds) {
