@@ -1,5 +1,7 @@
 #include "bench/verbs/verify.hpp"
 
+#include <stdexcept>
+
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
@@ -19,7 +21,12 @@ struct VerifyOptions {
 };
 
 void add_options(CLI::App& app, VerifyOptions& o) {
-  add_scenario(app, "--scenario", o.study.scenario)->required();
+  add_scenario(app, "--scenario", o.study.scenario);
+  add_robot(app, o.study.robot);
+  app.add_option(
+         "--truth", o.study.truth,
+         "of --robot: parameters of the simulated robot, a name or a JSON file [the first of --parameters]")
+      ->type_name("NAME|FILE");
   app.add_option("--parameters", o.study.parameters,
                  "JSON files, 'nominal', 'truth' or 'believed'; a comma list, may be given again")
       ->required()
@@ -33,6 +40,9 @@ void add_options(CLI::App& app, VerifyOptions& o) {
 }
 
 ExitCode verify_command(const VerifyOptions& o) {
+  require_one(o.study.scenario, o.study.robot);
+  if (!o.study.scenario.empty() && !o.study.truth.empty())
+    throw std::invalid_argument("--truth: it belongs to --robot; a scenario states its own");
   const Format format = parse_format(o.format);
   RunFolder folder(o.out, o.overwrite);
   folder.require_free();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSpeed = 0.25;         // m/s
 constexpr double kTurn = 0.5;           // rad/s, on the spot
-constexpr double kRamp = 0.4;           // s, to full speed and back
+constexpr double kSpeedUp = 0.4;        // s, to full speed and back
 constexpr double kSide = 1.5;           // m
 constexpr double kSteeringLimit = 0.6;  // rad, of robots that steer like cars
 constexpr int kStanding = 10;           // intervals before and after
@@ -90,8 +90,8 @@ RobotPhase circle(const RobotAbilities& a, double sense, double factor = 1) {
 
 // Share of the commanded speed t seconds into a phase that lasts so much longer that its length stays.
 double ramp(double t, double seconds) {
-  const double all = seconds + kRamp;
-  return std::clamp(std::min(t, all - t) / kRamp, 0.0, 1.0);
+  const double all = seconds + kSpeedUp;
+  return std::clamp(std::min(t, all - t) / kSpeedUp, 0.0, 1.0);
 }
 
 }  // namespace
@@ -155,7 +155,7 @@ Matrix twists_of(const RobotDrive& drive, const RobotAbilities& can) {
   for (const RobotPhase& phase : drive.phases) {
     Eigen::Vector3d twist(phase.vx, phase.vy, phase.omega);
     if (!plain) twist = phase.vx * can.ahead + phase.vy * left + phase.omega * can.turn;
-    for (double t = kRobotStep / 2; t < phase.seconds + kRamp; t += kRobotStep)
+    for (double t = kRobotStep / 2; t < phase.seconds + kSpeedUp; t += kRobotStep)
       list.push_back(ramp(t, phase.seconds) * twist);
   }
   list.insert(list.end(), kStanding, Eigen::Vector3d::Zero());

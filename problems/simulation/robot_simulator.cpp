@@ -18,11 +18,11 @@ constexpr double kMostTurned = 1e6;  // rad in one interval
 // Feedback of the robot's own odometry: 1/s ahead and aside, 1/s in heading, 1/m^2 where it cannot go aside.
 constexpr double kPositionGain = 1.5, kHeadingGain = 2, kCourseGain = 4;
 
-double to_grid(double value, double quantum) {
+double multiple_of(double value, double quantum) {
   return std::round(value / quantum) * quantum;
 }
 // Poses are written with seven digits behind the point.
-double to_pose_grid(double value) {
+double seven_digits(double value) {
   return std::round(value * 1e7) / 1e7;
 }
 
@@ -53,7 +53,7 @@ class Sensor {
  public:
   Sensor(bool drives, double counts) : drives_(drives), quantum_(2 * kPi / counts) {}
   double read(double value) {
-    if (!drives_) return to_grid(value, quantum_);
+    if (!drives_) return multiple_of(value, quantum_);
     turned_ += value;
     const double counts = std::round(turned_ / quantum_), increment = (counts - counted_) * quantum_;
     counted_ = counts;
@@ -161,9 +161,9 @@ RobotRun RobotSimulator::record(const RobotDrive& drive, const RobotAbilities& c
   Recording& r = run.recording;
   for (Eigen::Index k = 0; k <= intervals; ++k) {
     r.time_us.push_back(kStep_us * k);
-    r.reference.x.push_back(to_pose_grid(poses(0, k) + random.normal(noise_.position)));
-    r.reference.y.push_back(to_pose_grid(poses(1, k) + random.normal(noise_.position)));
-    r.reference.theta.push_back(to_pose_grid(poses(2, k) + random.normal(noise_.heading)));
+    r.reference.x.push_back(seven_digits(poses(0, k) + random.normal(noise_.position)));
+    r.reference.y.push_back(seven_digits(poses(1, k) + random.normal(noise_.position)));
+    r.reference.theta.push_back(seven_digits(poses(2, k) + random.normal(noise_.heading)));
   }
   for (Eigen::Index i = 0; i < signals.rows(); ++i) {
     const bool drive_signal = i < drives;

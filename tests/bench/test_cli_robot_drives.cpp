@@ -29,8 +29,16 @@ constexpr const char* kOwnRobot = R"({"name": "twin", "kinematics": "wheels",
 struct Case {
   std::string name, robot;  // robot: "" for kOwnRobot
   std::string truth;        // as a parameters file
-  double within;            // of calibrated parameters
+  double within;            // of calibrated parameters; 0: some combinations are free
 };
+
+nlohmann::json tables_of(const ProcessResult& result) {
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  nlohmann::json by_id;
+  const auto all = nlohmann::json::parse(result.exit_code == 0 ? result.out : R"({"tables": []})");
+  for (const auto& t : all.at("tables")) by_id[t.at("id").get<std::string>()] = t;
+  return by_id;
+}
 
 class CliRobotDrives : public ::testing::TestWithParam<Case> {
  protected:
@@ -57,11 +65,15 @@ TEST_P(CliRobotDrives, SimulatedDrivesCalibrateBackToTheirTruth) {
   const std::string out = (folder_ / "run").string();
   const ProcessResult run = run_bench({"--solver=lm", "--data=" + set, "--out=" + out, "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto record = nlohmann::json::parse(lines(content(folder_ / "run" / "runs.jsonl")).back());
+  const std::vector<std::string> written = lines(content(folder_ / "run" / "runs.jsonl"));
+  ASSERT_EQ(written.size(), 2u);
+  const auto record = nlohmann::json::parse(written[1]);
+  EXPECT_LT(record["cost"].get<double>(), 1e-3 * nlohmann::json::parse(written[0])["cost"].get<double>());
   EXPECT_EQ(record["termination"], "converged");
   for (const auto& p : record["parameters"]) {
     const std::string name = p["name"];
     EXPECT_EQ(json.at("known_parameters").at(0).at("values").at(name), wanted.at(name));
+    if (GetParam().within == 0) continue;
     EXPECT_NEAR(p["value"].get<double>(), wanted.at(name).get<double>(), GetParam().within) << name;
     EXPECT_GT(std::abs(p["nominal"].get<double>() - wanted.at(name).get<double>()), 2 * GetParam().within)
         << name;
@@ -73,15 +85,22 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Case{"differential", "diff", R"({"b": 0.31, "r_right": 0.0505, "r_left": 0.0495})", 2e-4},
         Case{"tricycle", "tricycle", R"({"wheelbase": 1.02, "r": 0.1015, "steering_zero": 0.02})", 3e-4},
+        Case{
+            "mecanum", "mecanum",
+            R"({"lx": 0.205, "ly": 0.197, "roller": 0.8, "r1": 0.051, "r2": 0.049, "r3": 0.0505, "r4": 0.05})",
+            0},
         Case{"own_wheels", "", R"({"track": 0.41, "right": 0.061, "left": 0.0595})", 2e-4}),
     [](const auto& c) { return c.param.name; });
 
-nlohmann::json tables_of(const ProcessResult& result) {
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  nlohmann::json by_id;
-  const auto all = nlohmann::json::parse(result.exit_code == 0 ? result.out : R"({"tables": []})");
-  for (const auto& t : all.at("tables")) by_id[t.at("id").get<std::string>()] = t;
-  return by_id;
+// Increments of the thesis' robot are no speeds: at the truth only noise is left.
+TEST(CliRobotSets, TheThesisRobotMayReportIncrements) {
+  const TemporaryFolder folder;
+  const std::string set = (folder / "set.json").string(), out = (folder / "run").string();
+  ASSERT_EQ(run_bench({"simulate", "--robot=4wis4wid", "--out=" + (folder / ".").string()}).exit_code, 0);
+  ASSERT_EQ(run_bench({"evaluate", "--data=" + set, "--parameters=truth", "--out=" + out}).exit_code, 0);
+  const auto record = nlohmann::json::parse(lines(content(folder / "run" / "runs.jsonl")).at(0));
+  EXPECT_LT(record["cost"].get<double>(), 0.1);
+  EXPECT_GT(record["cost"].get<double>(), 1e-4);
 }
 
 TEST(CliRobotPlans, StraightLinesDoNotTellATrackAndASquareIsProposed) {
@@ -148,6 +167,34 @@ TEST(CliRobotPlans, FewRecordingsAreToldAndATableOfOwnWheelsIsPlanned) {
   for (const auto& row : tables["plan.parameters"]["rows"]) EXPECT_EQ(row["determined"], "yes") << row;
 }
 
+TEST_P(CliRobotDrives, TheTruthIsRankedBeforeNominal) {
+  const std::string out = (folder_ / "new").string();
+  const std::vector<std::string> words = {"verify",     "--robot=" + robot(), "--parameters=" + truth(),
+                                          "--repeat=2", "--format=json",      "--threads=1"};
+  std::vector<std::string> kept = words;
+  kept.back() = "--threads=2";
+  kept.push_back("--out=" + out);
+  const ProcessResult judged = run_bench(words);
+  EXPECT_EQ(judged.out, run_bench(kept).out) << "whatever the number of threads";
+  auto tables = tables_of(judged);
+  const auto& totals = tables["verify.totals"]["rows"];
+  ASSERT_EQ(totals.size(), 2u);
+  EXPECT_EQ(totals[0]["parameters"], "nominal");
+  EXPECT_EQ(totals[1]["parameters"], "mine");
+  EXPECT_LT(totals[1]["change_percent"].get<double>(), -90);
+  EXPECT_THAT(tables["verify.totals"]["notes"].dump(), HasSubstr("simulated with 'mine' as the truth"));
+  // The robot steers by what it believes: with the truth it stops where it should.
+  const auto& ends = tables["verify.arrival"]["rows"];
+  EXPECT_LT(ends[1]["position_square_ccw"]["value"].get<double>(), 0.01);
+  EXPECT_GT(ends[0]["position_square_ccw"].get<double>(), 0.03);
+  const ProcessResult report = run_bench({"report", out});
+  EXPECT_THAT(report.out, HasSubstr("How far from the reference's end"));
+  // With the nominal values as the truth it is the other way round.
+  std::vector<std::string> other = words;
+  other.push_back("--truth=nominal");
+  EXPECT_GT(tables_of(run_bench(other))["verify.totals"]["rows"][1]["change_percent"].get<double>(), 100);
+}
+
 TEST(CliRobotDrivesErrors, SayInOneLineWhatDoesNotFit) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::vector<std::string>& words, int code,
@@ -171,6 +218,18 @@ TEST(CliRobotDrivesErrors, SayInOneLineWhatDoesNotFit) {
   refused({"simulate", "--scenario=exact", "--repeat=2", out}, 2, {"--repeat: it belongs to --robot"});
   refused({"simulate", "--robot=" + scenario, out}, 3, {"a scenario is given as --scenario"});
   refused({"simulate", "--robot=" + mine, out}, 3, {"neither \"schema\" nor \"kinematics\""});
+  refused({"verify", "--parameters=truth"}, 2, {"--scenario or --robot is required"});
+  refused({"verify", "--robot=diff", "--parameters=truth"}, 2, {"--parameters=truth", "known: nominal"});
+  refused({"verify", "--robot=diff", "--truth=truth", "--parameters=nominal"}, 2, {"--truth=truth"});
+  refused({"verify", "--robot=diff", "--parameters=" + mine}, 3, {"mine.json", "another robot"});
+  refused({"verify", "--robot=diff", "--parameters=nominal," + mine}, 3, {"mine.json", "another robot"});
+  refused({"verify", "--robot=diff", "--truth=" + far, "--parameters=nominal"}, 2, {"outside the box"});
+  refused({"verify", "--scenario=exact", "--truth=nominal", "--parameters=nominal"}, 2,
+          {"it belongs to --robot"});
+  const ProcessResult told =
+      run_bench({"verify", "--robot=diff", "--truth=nominal", "--parameters=" + far, "--repeat=1"});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.err, HasSubstr("'far' lie outside the box of differential: b=0.9 (0.255..0.345)"));
   refused({"plan", "--robot=triccle"}, 2, {"--robot=triccle", "did you mean 'tricycle'", "off_nominal"});
   refused({"plan", "--robot=" + mine}, 3, {"mine.json"});
   refused({"plan", "--robot=diff", "--drives=sideways"}, 2, {"unknown drive 'sideways'", "turn_cw"});

@@ -12,6 +12,7 @@
 #include "bench/catalogue/scenarios.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/parameter_sets.hpp"
+#include "bench/studies/planning/robot_verification.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/work_size.hpp"
 #include "problems/simulation/simulated_set.hpp"
@@ -19,10 +20,7 @@
 
 namespace odobench {
 
-namespace {
-
-std::vector<ParameterSet> read_sets(const simulate::RecordingScenario& s, const VerificationStudy& study) {
-  const ParameterNames names{robot_parameters(s.robot), simulate::known_parameters(s)};
+std::vector<ParameterSet> verified_sets(const ParameterNames& names, const VerificationStudy& study) {
   std::vector<ParameterSet> sets = read_parameters(names, "nominal");
   for (const std::string& source : split_sources(study.parameters))
     for (ParameterSet& set : read_parameters(names, source))
@@ -30,6 +28,48 @@ std::vector<ParameterSet> read_sets(const simulate::RecordingScenario& s, const 
         add_parameter_set(std::move(set), sets);
   return sets;
 }
+
+void put_errors(const CalibrationProblem& problem, const Vector& believed, VerifyOutcome& outcome) {
+  std::vector<RecordingError> errors;
+  for (const MaxErrors& e : problem.max_errors(believed))
+    errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+  outcome.errors = error_statistics(errors);
+  outcome.totals = error_totals(outcome.errors);
+  outcome.recordings = std::move(errors);
+}
+
+std::vector<RunRecord> verification_records(const VerifiedDrives& of, const std::vector<ParameterSet>& sets,
+                                            const std::vector<std::vector<VerifyOutcome>>& outcomes,
+                                            const VerificationStudy& study, InstructionSet kernel) {
+  const RunContext context = run_context(thread_count(study.threads), kernel);
+  std::vector<RunRecord> records;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    RunRecord record =
+        study_record(kVerificationProblem, of.name, sets[i].label, of.parameters, sets[i].values, context);
+    record.message = fmt::format("errors on {} new drives of each trajectory, steered by these parameters",
+                                 study.repeat * of.repetitions);
+    record.seed = record.base_seed = study.seed;
+    for (std::size_t k = 0; k < outcomes[i].size(); ++k)
+      for (RecordingError e : outcomes[i][k].recordings) {
+        e.recording += fmt::format("#{}", k + 1);
+        e.repetition += static_cast<int>(k) * of.repetitions;
+        record.errors.push_back(std::move(e));
+      }
+    for (std::size_t t = 0; t < of.drives.size(); ++t) {
+      const auto at = [&](std::size_t v) {
+        return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
+            .mean;
+      };
+      const std::string& drive = of.drives[t];
+      record.measures.put({kArrivalPosition + drive, at(0), "m", Better::None, drive});
+      record.measures.put({kArrivalHeading + drive, at(1), "rad", Better::None, drive});
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+namespace {
 
 std::array<double, 2> arrival_of(const simulate::SimulatedDrive& d, const simulate::Drive& drive) {
   const Pose &start = d.logs.true_poses.front(), &end = d.logs.true_poses.back();
@@ -53,46 +93,8 @@ VerifyOutcome drive_once(const simulate::RecordingScenario& s, const Vector& bel
     outcome.arrival.push_back(mean);
   }
   const CalibrationProblem problem(robot_parameters(s.robot), std::move(set.dataset.recordings), kernel);
-  std::vector<RecordingError> errors;
-  for (const MaxErrors& e : problem.max_errors(believed))
-    errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
-  outcome.errors = error_statistics(errors);
-  outcome.totals = error_totals(outcome.errors);
-  outcome.recordings = std::move(errors);
+  put_errors(problem, believed, outcome);
   return outcome;
-}
-
-// One record per set: the errors of every drive of every repeat, and where the robot really ended.
-std::vector<RunRecord> verification_records(const simulate::RecordingScenario& s,
-                                            const std::vector<ParameterSet>& sets,
-                                            const std::vector<std::vector<VerifyOutcome>>& outcomes,
-                                            const VerificationStudy& study, InstructionSet kernel) {
-  const RunContext context = run_context(thread_count(study.threads), kernel);
-  std::vector<RunRecord> records;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    RunRecord record = study_record(kVerificationProblem, s.name, sets[i].label, robot_parameters(s.robot),
-                                    sets[i].values, context);
-    record.message = fmt::format("errors on {} new drives of each trajectory, steered by these parameters",
-                                 study.repeat * s.repetitions);
-    record.seed = record.base_seed = study.seed;
-    for (std::size_t k = 0; k < outcomes[i].size(); ++k)
-      for (RecordingError e : outcomes[i][k].recordings) {
-        e.recording += fmt::format("#{}", k + 1);
-        e.repetition += static_cast<int>(k) * s.repetitions;
-        record.errors.push_back(std::move(e));
-      }
-    for (std::size_t t = 0; t < s.drives.size(); ++t) {
-      const auto at = [&](std::size_t v) {
-        return estimate(picked(outcomes[i], [&](const VerifyOutcome& one) { return one.arrival[t][v]; }))
-            .mean;
-      };
-      const std::string& drive = s.drives[t].name;
-      record.measures.put({kArrivalPosition + drive, at(0), "m", Better::None, drive});
-      record.measures.put({kArrivalHeading + drive, at(1), "rad", Better::None, drive});
-    }
-    records.push_back(std::move(record));
-  }
-  return records;
 }
 
 // The scenario with each set as what the robot believes.
@@ -122,6 +124,7 @@ void require_and_announce(const VerificationStudy& study, const simulate::Record
 
 Verification verify_parameters(const VerificationStudy& study, Watcher& watcher, const Stop& stop) {
   const InstructionSet kernel = kernel_in_force(study.kernel);
+  if (!study.robot.empty()) return verify_robot(study, kernel, watcher, stop);
   const simulate::RecordingScenario scenario = load_recording_scenario(study.scenario);
   if (!scenario.control.closed_loop)
     throw std::invalid_argument(fmt::format(
@@ -130,7 +133,8 @@ Verification verify_parameters(const VerificationStudy& study, Watcher& watcher,
   Verification v;
   std::vector<std::vector<VerifyOutcome>>& outcomes = v.rounds.outcomes;
   for (const simulate::Drive& drive : scenario.drives) v.rounds.drives.push_back(drive.name);
-  const std::vector<ParameterSet> sets = read_sets(scenario, study);
+  const std::vector<ParameterSet> sets =
+      verified_sets({robot_parameters(scenario.robot), simulate::known_parameters(scenario)}, study);
   for (const ParameterSet& set : sets) v.rounds.labels.push_back(set.label);
   const std::vector<simulate::RecordingScenario> scenarios = believing(scenario, sets);
   require_and_announce(study, scenario, sets.size(), watcher);
@@ -144,7 +148,9 @@ Verification verify_parameters(const VerificationStudy& study, Watcher& watcher,
       watcher.count_one();
     }
   watcher.count_ends();
-  v.records = verification_records(scenario, sets, outcomes, study, kernel);
+  v.records = verification_records(
+      {scenario.name, v.rounds.drives, scenario.repetitions, robot_parameters(scenario.robot)}, sets,
+      outcomes, study, kernel);
   return v;
 }
 

@@ -15,7 +15,9 @@
 namespace odobench {
 
 struct VerificationStudy {
-  std::string scenario;                 // file or name
+  std::string scenario;                 // file or name; "": of a robot
+  std::string robot;                    // file or class, where there is no scenario
+  std::string truth;                    // of a robot, name or file; "": the first of `parameters`
   std::vector<std::string> parameters;  // files or names, comma lists; "nominal" is always the first
   int repeat = 10;                      // times that all drives are driven
   std::uint64_t seed = 1;               // of the noise

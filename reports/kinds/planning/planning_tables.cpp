@@ -36,7 +36,7 @@ const char* thousandth(const std::string& unit) {
 }
 
 // What relative deviations are relative to.
-double scale_of(const ParameterValue& p) {
+double absolute_scale(const ParameterValue& p) {
   return p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
 }
 
@@ -64,7 +64,7 @@ Table parameters_table(const RunRecord& record) {
     count += determined;
     t.rows.push_back(
         {text_cell(record.parameters[i].name), percent(sd),
-         std::isfinite(sd) ? significant_cell(1000 * sd * scale_of(record.parameters[i]), 3) : Cell{},
+         std::isfinite(sd) ? significant_cell(1000 * sd * absolute_scale(record.parameters[i]), 3) : Cell{},
          text_cell(determined ? "yes" : "no")});
     if (!lengths)
       t.rows.back().insert(t.rows.back().begin() + 3, text_cell(thousandth(record.parameters[i].unit)));

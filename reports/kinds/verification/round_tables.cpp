@@ -140,6 +140,7 @@ std::vector<Table> verification_tables(const VerificationRounds& rounds) {
   for (std::size_t t = 0; t < rounds.drives.size(); ++t)
     tables.push_back(new_drive_table(maker, rounds.drives[t], t));
   tables.push_back(new_totals_table(maker, rounds.outcomes.front().size()));
+  for (const std::string& note : rounds.notes) tables.back().notes.push_back(note + ".");
   tables.push_back(interval_table(maker, rounds.drives));
   return tables;
 }

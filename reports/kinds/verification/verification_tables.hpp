@@ -35,6 +35,7 @@ struct VerificationRounds {
   std::vector<std::string> drives;                   // of the scenario
   std::vector<std::string> labels;                   // of the parameter sets; differences are to the first
   std::vector<std::vector<VerifyOutcome>> outcomes;  // by set and repeat, of both at least one
+  std::vector<std::string> notes = {};               // for the totals, a sentence without a full stop each
 };
 
 // Mean and half the width of its 95 % interval (Student); no interval of a single value.
