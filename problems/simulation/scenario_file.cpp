@@ -69,10 +69,7 @@ void read_robot(const JsonNode& node, RecordingScenario& s) {
   node.allow_only({"nominal", "box", "truth", "kinematics", "contact_offset_m", "steering_limit_deg"});
   if (node.has("nominal") || node.has("box")) read_nominal(node, s.robot);
   s.truth.parameters = s.control.believed = nominal_parameters(s.robot);
-  if (node.has("truth")) {
-    s.truth.parameters = read_parameters(node.at("truth"), s.robot);
-    require_truth_in_box(node.at("truth"), s);
-  }
+  if (node.has("truth")) s.truth.parameters = read_parameters(node.at("truth"), s.robot);
   if (node.has("kinematics")) {
     const JsonNode kinematics = node.at("kinematics");
     const std::string name = kinematics.text();
@@ -267,6 +264,8 @@ RecordingScenario read_scenario(const JsonNode& root) {
       root.at(key).fail("contradictory options: an exact scenario has no noise and no jitter",
                         "one or the other");
   validate(s, root.file());
+  if (root.has("robot") && root.at("robot").has("truth"))
+    require_truth_in_box(root.at("robot").at("truth"), s);
   return s;
 }
 
