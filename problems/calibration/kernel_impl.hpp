@@ -43,7 +43,24 @@ inline Pack<W> splat(double value) {
   }
 }
 
-// (cos - 1, sin) of a small angle: Taylor series to d^12 and d^11, or the library's functions.
+// The Taylor series of a small angle, to d^12 and d^11: sin(d) = d + d q s, cos(d) = 1 + q c, q = d^2.
+template <int W>
+inline void small_angle(const Pack<W>& d, Pack<W>& q, Pack<W>& s, Pack<W>& c) {
+  q = d * d;
+  s = splat<W>(-1.0 / 39916800.0);
+  s = s * q + splat<W>(1.0 / 362880.0);
+  s = s * q + splat<W>(-1.0 / 5040.0);
+  s = s * q + splat<W>(1.0 / 120.0);
+  s = s * q + splat<W>(-1.0 / 6.0);
+  c = splat<W>(1.0 / 479001600.0);
+  c = c * q + splat<W>(-1.0 / 3628800.0);
+  c = c * q + splat<W>(1.0 / 40320.0);
+  c = c * q + splat<W>(-1.0 / 720.0);
+  c = c * q + splat<W>(1.0 / 24.0);
+  c = c * q + splat<W>(-0.5);
+}
+
+// (cos - 1, sin) of a small angle: by the series above, or by the library's functions.
 template <int W, bool Exact>
 inline void rotation(const Pack<W>& d, Pack<W>& cos_minus_one, Pack<W>& sine) {
   if constexpr (Exact && W == 1) {
@@ -57,22 +74,46 @@ inline void rotation(const Pack<W>& d, Pack<W>& cos_minus_one, Pack<W>& sine) {
       cos_minus_one[i] = -2.0 * half * half;
     }
   } else {
-    const Pack<W> q = d * d;
-    Pack<W> s = splat<W>(-1.0 / 39916800.0);
-    s = s * q + splat<W>(1.0 / 362880.0);
-    s = s * q + splat<W>(-1.0 / 5040.0);
-    s = s * q + splat<W>(1.0 / 120.0);
-    s = s * q + splat<W>(-1.0 / 6.0);
+    Pack<W> q, s, c;
+    small_angle<W>(d, q, s, c);
     sine = d + d * (q * s);
-    Pack<W> c = splat<W>(1.0 / 479001600.0);
-    c = c * q + splat<W>(-1.0 / 3628800.0);
-    c = c * q + splat<W>(1.0 / 40320.0);
-    c = c * q + splat<W>(-1.0 / 720.0);
-    c = c * q + splat<W>(1.0 / 24.0);
-    c = c * q + splat<W>(-0.5);
     cos_minus_one = q * c;
   }
 }
+
+// A segment step by step: heading, position, and the sums of the position's errors.
+template <int W>
+class Walk {
+ public:
+  explicit Walk(const CostSums& sums) : c_(load<W>(sums.cos0)), n_(load<W>(sums.sin0)) {}
+
+  // Moves by (ux, uy) in the frame of the heading, then turns. reference: W numbers x, W numbers y.
+  template <bool Exact>
+  inline void step(const Pack<W>& ux, const Pack<W>& uy, const Pack<W>& turn, const double* reference) {
+    x_ = x_ + (c_ * ux - n_ * uy);
+    y_ = y_ + (n_ * ux + c_ * uy);
+    const Pack<W> dx = x_ - load<W>(reference), dy = y_ - load<W>(reference + W);
+    ex_ = ex_ + dx;
+    ey_ = ey_ + dy;
+    squares_ = squares_ + (dx * dx + dy * dy);
+    Pack<W> cm, sn;
+    rotation<W, Exact>(turn, cm, sn);
+    const Pack<W> next = c_ + (c_ * cm - n_ * sn);
+    n_ = n_ + (n_ * cm + c_ * sn);
+    c_ = next;
+  }
+  inline void end(CostSums& sums) const {
+    store<W>(sums.x, x_);
+    store<W>(sums.y, y_);
+    store<W>(sums.ex, ex_);
+    store<W>(sums.ey, ey_);
+    store<W>(sums.squares, squares_);
+  }
+
+ private:
+  Pack<W> c_, n_;
+  Pack<W> x_ = splat<W>(0), y_ = x_, ex_ = x_, ey_ = x_, squares_ = x_;
+};
 
 template <int W>
 struct Parameters {
@@ -90,8 +131,7 @@ template <int W, bool Exact>
 void run_cost(const Block& block, const double* s, CostSums& sums) {
   using V = Pack<W>;
   const Parameters<W> z(s);
-  V c = load<W>(sums.cos0), n = load<W>(sums.sin0);
-  V x = splat<W>(0), y = x, ex = x, ey = x, squares = x;
+  Walk<W> walk(sums);
   const double* row = block.data;
   for (long k = 0; k < block.steps; ++k, row += kStreams * W) {
     const V c0 = load<W>(row), c1 = load<W>(row + W), c2 = load<W>(row + 2 * W), c3 = load<W>(row + 3 * W);
@@ -101,23 +141,9 @@ void run_cost(const Block& block, const double* s, CostSums& sums) {
     const V uy = (z.r[0] * s0 + z.r[1] * s1) + (z.r[2] * s2 + z.r[3] * s3);
     const V turn = ((z.q[0] * s0 + z.q[1] * s1) + (z.q[2] * s2 + z.q[3] * s3)) -
                    ((z.p[0] * c0 + z.p[1] * c1) + (z.p[2] * c2 + z.p[3] * c3));
-    x = x + (c * ux - n * uy);
-    y = y + (n * ux + c * uy);
-    const V dx = x - load<W>(row + 8 * W), dy = y - load<W>(row + 9 * W);
-    ex = ex + dx;
-    ey = ey + dy;
-    squares = squares + (dx * dx + dy * dy);
-    V cm, sn;
-    rotation<W, Exact>(turn, cm, sn);
-    const V next = c + (c * cm - n * sn);
-    n = n + (n * cm + c * sn);
-    c = next;
+    walk.template step<Exact>(ux, uy, turn, row + 8 * W);
   }
-  store<W>(sums.x, x);
-  store<W>(sums.y, y);
-  store<W>(sums.ex, ex);
-  store<W>(sums.ey, ey);
-  store<W>(sums.squares, squares);
+  walk.end(sums);
 }
 
 template <int W, bool Exact>
@@ -198,19 +224,9 @@ inline void step_weights(const Pack<W>& d, Pack<W>& a, Pack<W>& b) {
     rotation<W, false>(0.5 * d, a, b);
     a = a + splat<W>(1.0);
   } else {
-    const Pack<W> q = d * d;
-    Pack<W> s = splat<W>(-1.0 / 39916800.0);
-    s = s * q + splat<W>(1.0 / 362880.0);
-    s = s * q + splat<W>(-1.0 / 5040.0);
-    s = s * q + splat<W>(1.0 / 120.0);
-    s = s * q + splat<W>(-1.0 / 6.0);
+    Pack<W> q, s, c;
+    small_angle<W>(d, q, s, c);
     a = splat<W>(1.0) + q * s;
-    Pack<W> c = splat<W>(1.0 / 479001600.0);
-    c = c * q + splat<W>(-1.0 / 3628800.0);
-    c = c * q + splat<W>(1.0 / 40320.0);
-    c = c * q + splat<W>(-1.0 / 720.0);
-    c = c * q + splat<W>(1.0 / 24.0);
-    c = c * q + splat<W>(-0.5);
     b = -(d * c);
   }
 }
@@ -226,8 +242,7 @@ void run_streams(const StreamBlock& block, const double* m, CostSums& sums) {
     my[i] = splat<W>(m[count + i]);
     mt[i] = splat<W>(m[2 * count + i]);
   }
-  V c = load<W>(sums.cos0), n = load<W>(sums.sin0);
-  V x = splat<W>(0), y = x, ex = x, ey = x, squares = x;
+  Walk<W> walk(sums);
   const double* row = block.data;
   for (long k = 0; k < block.steps; ++k, row += (count + 2) * W) {
     const V first = load<W>(row);
@@ -246,23 +261,9 @@ void run_streams(const StreamBlock& block, const double* m, CostSums& sums) {
       uy = ux * b + uy * a;
       ux = ahead;
     }
-    x = x + (c * ux - n * uy);
-    y = y + (n * ux + c * uy);
-    const V dx = x - load<W>(row + count * W), dy = y - load<W>(row + (count + 1) * W);
-    ex = ex + dx;
-    ey = ey + dy;
-    squares = squares + (dx * dx + dy * dy);
-    V cm, sn;
-    rotation<W, false>(turn, cm, sn);
-    const V next = c + (c * cm - n * sn);
-    n = n + (n * cm + c * sn);
-    c = next;
+    walk.template step<false>(ux, uy, turn, row + count * W);
   }
-  store<W>(sums.x, x);
-  store<W>(sums.y, y);
-  store<W>(sums.ex, ex);
-  store<W>(sums.ey, ey);
-  store<W>(sums.squares, squares);
+  walk.end(sums);
 }
 
 template <int W, StepRule Rule>
