@@ -32,6 +32,11 @@ class WheeledForm {
   // Rows of every recording (of Segments: where pieces begin and end), the first of them the start.
   const std::vector<std::size_t>& rows(std::size_t recording) const { return drives_[recording].rows; }
 
+  // A recording as the robot takes it, one column per interval: motions of the wheels (rad), steering angles;
+  // and the lengths of the intervals, s.
+  const Matrix& signals(std::size_t recording) const { return drives_[recording].signals; }
+  const Vector& seconds(std::size_t recording) const { return drives_[recording].seconds; }
+
   // z: the robot's parameters, then x, y, yaw of the mount where it is free.
   Eigen::Index parameter_count() const { return parameter_count_; }
   Eigen::Index residual_count() const { return residual_count_; }

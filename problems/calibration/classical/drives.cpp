@@ -15,23 +15,6 @@ using Eigen::Index;
 
 constexpr double kTurning = kPi / 2;
 
-// Speeds become the angles of their intervals, increments and steering angles are those of the next stamp;
-// beside speeds steering angles are those of the stamp itself.
-Matrix signals_by_interval(const robots::WheeledRobot& robot, const Recording& recording,
-                           const Vector& seconds) {
-  Matrix signals(static_cast<Index>(robot.signals().size()), seconds.size());
-  std::size_t shift = 0;
-  for (Index row = 0; row < signals.rows(); ++row) {
-    const Signal& signal = *recording.find(robot.signals()[static_cast<std::size_t>(row)]);
-    if (signal.kind == SignalKind::Increment) shift = 1;
-    for (Index k = 0; k < seconds.size(); ++k) {
-      const double value = signal.values[static_cast<std::size_t>(k) + shift];
-      signals(row, k) = signal.kind == SignalKind::Speed ? value * seconds[k] : value;
-    }
-  }
-  return signals;
-}
-
 }  // namespace
 
 Eigen::Vector3d relative(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -66,7 +49,7 @@ Drives::Drives(const Robot& robot, const std::vector<Recording>& recordings, con
   cuts.distance = options.distance;
   const WheeledForm form(robot_, recordings, cuts);
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    list_.push_back(read(recordings[i]));
+    list_.push_back(read(recordings[i], form.signals(i), form.seconds(i)));
     Drive& drive = list_.back();
     std::size_t entry = 0;
     for (const std::size_t stamp : form.rows(i)) {
@@ -76,15 +59,11 @@ Drives::Drives(const Robot& robot, const std::vector<Recording>& recordings, con
   }
 }
 
-Drive Drives::read(const Recording& recording) const {
+Drive Drives::read(const Recording& recording, const Matrix& signals, const Vector& seconds) const {
   Drive drive;
   drive.id = recording.id;
-  drive.seconds.resize(static_cast<Index>(recording.size()) - 1);
-  for (Index k = 0; k < drive.seconds.size(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    drive.seconds[k] = static_cast<double>(recording.time_us[i + 1] - recording.time_us[i]) * 1e-6;
-  }
-  drive.signals = signals_by_interval(robot_, recording, drive.seconds);
+  drive.signals = signals;
+  drive.seconds = seconds;
   drive.odometry = odometry(drive, nominal_, options_.rule);
   drive.sense = drive.turned() > kTurning ? 1 : drive.turned() < -kTurning ? -1 : 0;
 

@@ -48,7 +48,7 @@ class Drives {
   Eigen::Vector3d end_error(const Drive& drive, const Vector& z) const;
 
  private:
-  Drive read(const Recording& recording) const;
+  Drive read(const Recording& recording, const Matrix& signals, const Vector& seconds) const;
 
   robots::WheeledRobot robot_;
   Options options_;
