@@ -60,12 +60,14 @@ problems/information          problems problems/calibration problems/robots data
 problems/robots               datasets datasets/robots problems/matrices.hpp
 problems/simulation           datasets/ problems/robots
 problems/simulation/motors    problems/simulation
-solvers                       problems/problem.hpp problems/instruction_set.hpp
+solvers                       solvers/box solvers/certificate problems/problem.hpp problems/instruction_set.hpp
+solvers/box                   problems/problem.hpp
+solvers/certificate           solvers/box solvers/solver.hpp problems/problem.hpp problems/instruction_set.hpp
 solvers/registry.cpp          solvers/
-solvers/local                 solvers problems/problem.hpp
-solvers/population            solvers problems/problem.hpp
-solvers/lattice               solvers problems/problem.hpp problems/block_quadratic.hpp problems/lattice.hpp problems/instruction_set.hpp
-solvers/libraries             solvers problems/problem.hpp
+solvers/local                 solvers solvers/box solvers/certificate problems/problem.hpp
+solvers/population            solvers solvers/box solvers/certificate problems/problem.hpp
+solvers/lattice               solvers solvers/box solvers/certificate problems/problem.hpp problems/block_quadratic.hpp problems/lattice.hpp problems/instruction_set.hpp
+solvers/libraries             solvers solvers/box solvers/certificate problems/problem.hpp
 bench/console                 solvers/run.hpp reports/render bench/studies/watcher.hpp
 bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue

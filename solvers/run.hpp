@@ -1,6 +1,6 @@
 // The one driver of every solver: budget, clock, target, interruption, best-so-far, trace and evaluation
-// counts live here; a solver is only its method. Solvers work in the unit box of solvers/box.hpp: u in [-1,
-// 1]^m.
+// counts live here; a solver is only its method. Solvers work in the unit box of solvers/box/box.hpp: u in
+// [-1, 1]^m.
 #pragma once
 
 #include <atomic>
@@ -12,13 +12,13 @@
 
 #include "base/random.hpp"
 #include "problems/problem.hpp"
-#include "solvers/box.hpp"
+#include "solvers/box/box.hpp"
 
 namespace odobench {
 
 enum class Termination {
   NotStarted,
-  Converged,  // said by solve() alone: the test of solvers/verdict.hpp holds at the returned point
+  Converged,  // said by solve() alone: the test of solvers/certificate/verdict.hpp holds at the returned point
   Settled,    // the method ended by its own tolerance, and there are no derivatives to tell what that means
   Stalled,    // no further progress, and optimality is not shown or is refuted
   IterationLimit,  // the method's own iteration or generation count is used up

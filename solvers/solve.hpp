@@ -1,9 +1,9 @@
 // One cell of a table: a problem, a solver, a start, a seed, a budget -> a result.
 #pragma once
 
+#include "solvers/certificate/verdict.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solver.hpp"
-#include "solvers/verdict.hpp"
 
 namespace odobench {
 

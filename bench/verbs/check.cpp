@@ -1,4 +1,4 @@
-#include "bench/verbs/check.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
+#include "bench/options/written_files.hpp"
 #include "bench/studies/records.hpp"
-#include "bench/verbs/common_options.hpp"
-#include "bench/verbs/written_files.hpp"
 #include "reports/regression/baseline.hpp"
 
 namespace odobench {

@@ -1,4 +1,4 @@
-#include "bench/verbs/compare.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/records.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/regression/changes.hpp"
 #include "solvers/options.hpp"
 

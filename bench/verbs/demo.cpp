@@ -1,4 +1,4 @@
-#include "bench/verbs/demo.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <unistd.h>
 
@@ -8,8 +8,8 @@
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/catalogue/robots.hpp"
-#include "bench/verbs/common_options.hpp"
-#include "bench/verbs/written_files.hpp"
+#include "bench/options/common_options.hpp"
+#include "bench/options/written_files.hpp"
 #include "datasets/robots/layouts.hpp"
 #include "problems/simulation/demo_generator.hpp"
 #include "problems/simulation/robot_demo.hpp"

@@ -1,4 +1,4 @@
-#include "bench/verbs/discretise.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "bench/catalogue/number_text.hpp"
 #include "bench/console/table_output.hpp"
-#include "bench/verbs/common_options.hpp"
+#include "bench/options/common_options.hpp"
 #include "problems/kalman/linear_system.hpp"
 #include "problems/kalman/system_file.hpp"
 #include "reports/render/table.hpp"

@@ -1,14 +1,14 @@
-#include "bench/verbs/evaluate.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/calibration/evaluation_study.hpp"
 #include "bench/studies/calibration/tracks_csv.hpp"
 #include "bench/studies/run_folder.hpp"
 #include "bench/studies/run_tracks.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
 
 namespace odobench {

@@ -1,4 +1,4 @@
-#include "bench/verbs/export.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/options/common_options.hpp"
+#include "bench/options/written_files.hpp"
 #include "bench/studies/records.hpp"
-#include "bench/verbs/common_options.hpp"
-#include "bench/verbs/written_files.hpp"
 #include "reports/figures/vega.hpp"
 #include "reports/records/tracks.hpp"
 

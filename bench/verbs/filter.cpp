@@ -1,4 +1,4 @@
-#include "bench/verbs/filter.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/filter_options.hpp"
 #include "bench/studies/entropy/filter_study.hpp"
 #include "bench/studies/run_folder.hpp"
-#include "bench/verbs/filter_options.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 
 namespace odobench {

@@ -1,4 +1,4 @@
-#include "bench/verbs/import.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,8 +13,8 @@
 #include "bench/catalogue/importers.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
-#include "bench/verbs/common_options.hpp"
-#include "bench/verbs/written_files.hpp"
+#include "bench/options/common_options.hpp"
+#include "bench/options/written_files.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
 
 namespace odobench {

@@ -1,4 +1,4 @@
-#include "bench/verbs/list.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +9,8 @@
 #include "base/names.hpp"
 #include "bench/catalogue/locations.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/scenario_tables.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/robots/layouts.hpp"
 #include "problems/robots/wheeled_robot.hpp"

@@ -1,12 +1,12 @@
-#include "bench/verbs/plan.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include "bench/catalogue/number_text.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/planning/drive_plan.hpp"
 #include "bench/studies/run_folder.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/planning/planning_tables.hpp"
 
 namespace odobench {

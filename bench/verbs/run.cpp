@@ -1,4 +1,4 @@
-#include "bench/verbs/run.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/records.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
 
 namespace odobench {

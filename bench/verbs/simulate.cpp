@@ -1,4 +1,4 @@
-#include "bench/verbs/simulate.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -15,10 +15,10 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
+#include "bench/options/written_files.hpp"
 #include "bench/studies/planning/robot_drives.hpp"
 #include "bench/studies/work_size.hpp"
-#include "bench/verbs/common_options.hpp"
-#include "bench/verbs/written_files.hpp"
 #include "problems/simulation/raw_csv.hpp"
 #include "problems/simulation/simulated_set.hpp"
 

@@ -1,4 +1,4 @@
-#include "bench/verbs/tune.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include "base/files.hpp"
 #include "bench/catalogue/number_text.hpp"
@@ -6,9 +6,9 @@
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/fusion/tuning_study.hpp"
 #include "bench/studies/run_folder.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/fusion/tuning_tables.hpp"
 
 namespace odobench {

@@ -1,13 +1,13 @@
-#include "bench/verbs/verify.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <stdexcept>
 
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/planning/verification.hpp"
 #include "bench/studies/run_folder.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/verification/verification_tables.hpp"
 
 namespace odobench {

@@ -1,12 +1,12 @@
-#include "bench/verbs/windows.hpp"
+#include "bench/verbs/verbs.hpp"
 
 #include <fmt/format.h>
 
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
+#include "bench/options/common_options.hpp"
 #include "bench/studies/entropy/window_study.hpp"
-#include "bench/verbs/common_options.hpp"
 #include "reports/kinds/entropy/window_tables.hpp"
 
 namespace odobench {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "solvers/box_quadratic.hpp"
+#include "solvers/box/box_quadratic.hpp"
 #include "solvers/lattice/ternary_search.hpp"
 
 namespace odobench {

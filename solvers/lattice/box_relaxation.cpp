@@ -1,4 +1,4 @@
-#include "solvers/box_quadratic.hpp"
+#include "solvers/box/box_quadratic.hpp"
 #include "solvers/lattice/ternary_blocks.hpp"
 #include "solvers/lattice/ternary_search.hpp"
 

@@ -11,7 +11,7 @@
 #include <exception>
 #include <mutex>
 
-#include "solvers/optimality.hpp"
+#include "solvers/certificate/optimality.hpp"
 
 namespace odobench {
 namespace {

@@ -8,8 +8,8 @@
 #include <exception>
 #include <mutex>
 
-#include "solvers/optimality.hpp"
-#include "solvers/verdict.hpp"
+#include "solvers/certificate/optimality.hpp"
+#include "solvers/certificate/verdict.hpp"
 
 namespace odobench {
 namespace {

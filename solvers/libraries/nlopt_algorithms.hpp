@@ -23,7 +23,7 @@ struct NloptAlgorithm {
   bool late_stop = false;   // must not be stopped before its initial points are done
   bool scalar_step =
       false;            // NLopt's own initial step is the smallest over the parameters: tiny next to a bound
-  bool folded = false;  // knows no bounds: runs on the coordinates of solvers/boundary_map.hpp
+  bool folded = false;  // knows no bounds: runs on the coordinates of solvers/box/boundary_map.hpp
   bool not_for_one = false;  // refuses a single parameter
   int most_parameters = 0;   // 0: any number
 };

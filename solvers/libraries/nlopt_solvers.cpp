@@ -9,9 +9,9 @@
 #include <mutex>
 
 #include "base/range.hpp"
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
+#include "solvers/certificate/optimality.hpp"
 #include "solvers/libraries/nlopt_algorithms.hpp"
-#include "solvers/optimality.hpp"
 
 namespace odobench {
 namespace {

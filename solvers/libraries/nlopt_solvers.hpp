@@ -14,8 +14,8 @@
 // it starts, on the thread that the run stays on: same seed, same bits, in any number of threads. StoGO and
 // AGS have static variables besides; one mutex lets one run of them at a time through, evaluations included.
 //
-// NEWUOA knows no bounds: it works on coordinates that fold onto the box (solvers/boundary_map.hpp). NLopt's
-// bounded variant is left out, since its subproblem cannot be interrupted and may not return.
+// NEWUOA knows no bounds: it works on coordinates that fold onto the box (solvers/box/boundary_map.hpp).
+// NLopt's bounded variant is left out, since its subproblem cannot be interrupted and may not return.
 //
 // What cannot be cured from outside: StoGO calls exit() when a denominator of its local search is exactly
 // zero (not seen in 400 runs on the classic problems and on functions of one variable).

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/box_least_squares.hpp"
-#include "solvers/box_quadratic.hpp"
-#include "solvers/optimality.hpp"
-#include "solvers/rounding.hpp"
+#include "solvers/box/box_least_squares.hpp"
+#include "solvers/box/box_quadratic.hpp"
+#include "solvers/certificate/optimality.hpp"
+#include "solvers/certificate/rounding.hpp"
 
 namespace odobench {
 namespace {

@@ -23,7 +23,7 @@ class LocalModel {
   // finite or the run has been stopped.
   bool evaluate(Run& run, const Vector& u);
   double cost() const { return cost_; }
-  // max over free i of |J'r|_i / (|J_i| |r|), see solvers/optimality.hpp.
+  // max over free i of |J'r|_i / (|J_i| |r|), see solvers/certificate/optimality.hpp.
   double projected_cosine(const Vector& u) const;
   // argmin |r + J d|^2 + lambda |D d|^2 in lower <= d <= upper.
   Vector step(double lambda, const Vector& lower, const Vector& upper) const;

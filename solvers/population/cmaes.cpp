@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 #include "solvers/population/cma_core.hpp"
 
 namespace odobench {

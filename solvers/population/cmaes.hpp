@@ -1,5 +1,5 @@
 // CMA-ES with box constraints and restarts: CmaDescent (solvers/population/cma_core.hpp) behind the map of
-// solvers/boundary_map.hpp, so that the optimum may lie on any number of bounds.
+// solvers/box/boundary_map.hpp, so that the optimum may lie on any number of bounds.
 //
 // The first descent begins at the start of the run. A descent that has ended is followed by another one from
 // a point drawn uniformly from the box,

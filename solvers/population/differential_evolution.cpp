@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 
 namespace odobench {
 namespace {

@@ -13,7 +13,7 @@
 // `memory` places that hold weighted means (Lehmer means, weights: the gains) of the values that succeeded,
 // one place renewed a generation.
 //     N = N_0 + (4 - N_0) e / E                                              (D3) e of E evaluations made
-// x lives in the coordinates of solvers/boundary_map.hpp; a coordinate that leaves them goes half the way
+// x lives in the coordinates of solvers/box/boundary_map.hpp; a coordinate that leaves them goes half the way
 // back to the parent's.
 #pragma once
 

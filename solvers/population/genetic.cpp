@@ -8,7 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 #include "solvers/population/genetic_thesis.hpp"
 
 namespace odobench {

@@ -1,7 +1,7 @@
 // Genetic algorithms on the box.
 //
 // variant=modern (default): real-coded, with a multi-parent recombination that does not depend on the
-// coordinate frame. Population P of points y in R^m behind the map of solvers/boundary_map.hpp. Every
+// coordinate frame. Population P of points y in R^m behind the map of solvers/box/boundary_map.hpp. Every
 // generation:
 //     n_p parents y_1 .. y_{n_p}, in the order of their costs, are drawn from P without replacement;
 //     n_c children  y = c + alpha sum_j xi_j (y_j - mean y_j) / sqrt(n_p),  xi_j ~ N(0, 1) i.i.d.         (R)

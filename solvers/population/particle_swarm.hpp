@@ -11,8 +11,8 @@
 // in which the valley is axis-parallel: its own numbers never have to know the valley's direction or
 // condition. (M2) is the success-based inertia of Nickabadi et al. (Appl. Soft Comput. 11, 2011) as a
 // controller: too wide a swarm never betters a best in a narrow valley, one that always does is contracting
-// too early. x lives in the coordinates of solvers/boundary_map.hpp; a coordinate that leaves them is put on
-// the bound and loses its velocity, so that the swarm can lie on bounds exactly.
+// too early. x lives in the coordinates of solvers/box/boundary_map.hpp; a coordinate that leaves them is put
+// on the bound and loses its velocity, so that the swarm can lie on bounds exactly.
 //
 // variant=thesis (J. Vitko, Zagreb 2024), g the best of the swarm, fixed W, c1, c2, x clipped to the box,
 // v = 0 at first:

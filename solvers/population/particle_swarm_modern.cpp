@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 #include "solvers/population/particle_swarm.hpp"
 
 namespace odobench {

@@ -17,9 +17,9 @@
 #include <thread>
 
 #include "base/sha256.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
-#include "tests/support/small_dataset.hpp"
 
 namespace odobench {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/records/record.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace odobench {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/files.hpp"
-#include "tests/support/filter_run_files.hpp"
+#include "tests/support/data/filter_run_files.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace odobench {

@@ -12,12 +12,12 @@
 #include <sstream>
 
 #include "reports/records/record.hpp"
+#include "tests/support/data/filter_run_files.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/filter_run_files.hpp"
 #include "tests/support/measures.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/shared_data.hpp"
-#include "tests/support/small_dataset.hpp"
 
 namespace odobench {
 namespace {

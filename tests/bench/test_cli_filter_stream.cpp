@@ -9,9 +9,9 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/support/filter_run_files.hpp"
+#include "tests/support/data/filter_run_files.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/small_dataset.hpp"
 
 namespace odobench {
 namespace {

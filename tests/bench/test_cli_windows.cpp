@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "reports/records/record.hpp"
+#include "tests/support/data/entropy_windows.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/entropy_windows.hpp"
 #include "tests/support/measures.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/small_dataset.hpp"
 
 namespace odobench {
 namespace {

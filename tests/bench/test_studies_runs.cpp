@@ -23,8 +23,8 @@
 #include "bench/studies/planning/drive_plan.hpp"
 #include "bench/studies/planning/verification.hpp"
 #include "reports/records/record.hpp"
-#include "tests/support/entropy_windows.hpp"
-#include "tests/support/filter_run_files.hpp"
+#include "tests/support/data/entropy_windows.hpp"
+#include "tests/support/data/filter_run_files.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"
 

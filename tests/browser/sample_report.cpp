@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "reports/page/web_assets.hpp"
-#include "tests/support/sample_document.hpp"
+#include "tests/support/data/sample_document.hpp"
 
 namespace {
 

@@ -12,9 +12,9 @@
 #include "base/files.hpp"
 #include "datasets/native/columns.hpp"
 #include "datasets/robot_4wis4wid.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
-#include "tests/support/small_dataset.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace odobench {

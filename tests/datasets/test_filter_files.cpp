@@ -10,8 +10,8 @@
 #include "datasets/entropy/entropy_window_file.hpp"
 #include "datasets/entropy/filter_run.hpp"
 #include "datasets/entropy/filter_truth.hpp"
+#include "tests/support/data/filter_run_files.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/filter_run_files.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace odobench {

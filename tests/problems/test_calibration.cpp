@@ -7,10 +7,10 @@
 #include "problems/calibration/kernel.hpp"
 #include "problems/calibration/structure.hpp"
 #include "problems/instruction_set.hpp"
+#include "solvers/certificate/verdict.hpp"
 #include "solvers/solve.hpp"
-#include "solvers/verdict.hpp"
+#include "tests/support/data/synthetic_recording.hpp"
 #include "tests/support/shared_data.hpp"
-#include "tests/support/synthetic_recording.hpp"
 
 namespace odobench {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "solvers/solve.hpp"
-#include "tests/support/vitko_problem.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 
 namespace odobench {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "problems/calibration/classical/classical.hpp"
-#include "tests/support/optiodom.hpp"
+#include "tests/support/data/optiodom.hpp"
 
 namespace odobench::classical {
 namespace {

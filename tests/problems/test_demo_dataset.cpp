@@ -12,9 +12,9 @@
 #include "base/files.hpp"
 #include "datasets/native/columns.hpp"
 #include "problems/calibration/calibration_problem.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"
-#include "tests/support/vitko_problem.hpp"
 
 namespace odobench {
 namespace {

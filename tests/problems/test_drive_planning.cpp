@@ -12,9 +12,9 @@
 #include "problems/simulation/simulated_set.hpp"
 #include "reports/statistics/statistics.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 #include "tests/support/source_dir.hpp"
-#include "tests/support/vitko_problem.hpp"
 
 namespace odobench {
 namespace {

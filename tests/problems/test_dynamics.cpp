@@ -9,8 +9,8 @@
 
 #include "problems/simulation/motors/drive.hpp"
 #include "problems/simulation/motors/sensors.hpp"
+#include "tests/support/data/report_records.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/report_records.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -10,7 +10,7 @@
 #include "solvers/lattice/ternary_kernel.hpp"
 #include "solvers/lattice/ternary_search.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/entropy_windows.hpp"
+#include "tests/support/data/entropy_windows.hpp"
 
 namespace odobench {
 namespace {

@@ -12,8 +12,8 @@
 #include "problems/fusion/fusion.hpp"
 #include "problems/fusion/robot_model.hpp"
 #include "problems/fusion/sensor_streams.hpp"
+#include "tests/support/data/synthetic_recording.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/synthetic_recording.hpp"
 
 namespace odobench {
 namespace {

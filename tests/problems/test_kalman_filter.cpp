@@ -13,9 +13,9 @@
 #include "problems/fusion/robot_model.hpp"
 #include "problems/kalman/consistency.hpp"
 #include "problems/kalman/linear_model.hpp"
+#include "tests/support/data/report_records.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/normal.hpp"
-#include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace odobench {

@@ -10,8 +10,8 @@
 #include "problems/kalman/covariance.hpp"
 #include "problems/kalman/linear_system.hpp"
 #include "problems/kalman/triangular.hpp"
+#include "tests/support/data/report_records.hpp"
 #include "tests/support/data_error.hpp"
-#include "tests/support/report_records.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace odobench {

@@ -10,8 +10,8 @@
 
 #include "problems/classic/more_garbow_hillstrom.hpp"
 #include "solvers/solve.hpp"
+#include "tests/support/data/mgh_reference.hpp"
 #include "tests/support/jacobian_check.hpp"
-#include "tests/support/mgh_reference.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace odobench {

@@ -8,7 +8,7 @@
 #include "problems/calibration/classical/classical.hpp"
 #include "problems/calibration/drive_errors.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/optiodom.hpp"
+#include "tests/support/data/optiodom.hpp"
 
 namespace odobench {
 namespace {

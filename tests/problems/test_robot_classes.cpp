@@ -11,7 +11,7 @@
 
 #include "base/angle.hpp"
 #include "datasets/robots/layouts.hpp"
-#include "tests/support/robots.hpp"
+#include "tests/support/data/robots.hpp"
 
 namespace odobench::robots {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "datasets/robots/layouts.hpp"
 #include "problems/robots/integration.hpp"
-#include "tests/support/robots.hpp"
+#include "tests/support/data/robots.hpp"
 
 namespace odobench::robots {
 namespace {

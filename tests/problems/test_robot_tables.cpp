@@ -10,7 +10,7 @@
 #include "datasets/robot_4wis4wid.hpp"
 #include "datasets/robots/layouts.hpp"
 #include "problems/robots/four_wheel_steering.hpp"
-#include "tests/support/robots.hpp"
+#include "tests/support/data/robots.hpp"
 
 namespace odobench::robots {
 namespace {

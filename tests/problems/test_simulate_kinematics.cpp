@@ -8,8 +8,8 @@
 #include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/simulation/simulated_set.hpp"
-#include "tests/support/report_records.hpp"
-#include "tests/support/vitko_problem.hpp"
+#include "tests/support/data/report_records.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 
 namespace odobench::simulate {
 namespace {

@@ -13,10 +13,10 @@
 #include "problems/simulation/scenario_file.hpp"
 #include "problems/simulation/simulated_set.hpp"
 #include "reports/statistics/statistics.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/shared_data.hpp"
 #include "tests/support/source_dir.hpp"
-#include "tests/support/vitko_problem.hpp"
 
 namespace odobench::simulate {
 namespace {

@@ -5,7 +5,7 @@
 #include "problems/entropy/sliding_filter.hpp"
 #include "problems/entropy/window_problem.hpp"
 #include "solvers/lattice/ternary_search.hpp"
-#include "tests/support/entropy_windows.hpp"
+#include "tests/support/data/entropy_windows.hpp"
 
 namespace odobench {
 namespace {

@@ -9,7 +9,7 @@
 #include "datasets/robots/robot.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/synthetic_recording.hpp"
+#include "tests/support/data/synthetic_recording.hpp"
 
 namespace odobench {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "reports/regression/baseline.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 
 namespace odobench {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "reports/kinds/calibration/calibration_tables.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 
 namespace odobench {
 namespace {

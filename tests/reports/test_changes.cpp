@@ -6,7 +6,7 @@
 
 #include "reports/records/schema_1.hpp"
 #include "reports/regression/changes.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 
 namespace odobench {
 namespace {

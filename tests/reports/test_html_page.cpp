@@ -13,7 +13,7 @@
 #include "reports/page/html_table.hpp"
 #include "reports/page/html_text.hpp"
 #include "reports/page/web_assets.hpp"
-#include "tests/support/sample_document.hpp"
+#include "tests/support/data/sample_document.hpp"
 
 namespace odobench {
 namespace {

@@ -8,7 +8,7 @@
 #include "reports/kinds/kinds.hpp"
 #include "reports/page/report_document.hpp"
 #include "reports/render/table.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace odobench {

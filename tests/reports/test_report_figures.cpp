@@ -18,7 +18,7 @@
 #include "reports/kinds/fusion/fusion_record.hpp"
 #include "reports/page/report_document.hpp"
 #include "reports/records/tracks.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 
 namespace odobench {
 namespace {

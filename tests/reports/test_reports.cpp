@@ -9,7 +9,7 @@
 
 #include "base/json_node.hpp"
 #include "reports/statistics/statistics.hpp"
-#include "tests/support/report_records.hpp"
+#include "tests/support/data/report_records.hpp"
 
 namespace odobench {
 namespace {

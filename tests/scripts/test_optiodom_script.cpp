@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/optiodom.hpp"
+#include "tests/support/data/optiodom.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "problems/classic/classic_problems.hpp"
-#include "solvers/derivative_check.hpp"
+#include "solvers/certificate/derivative_check.hpp"
 #include "solvers/solve.hpp"
 
 namespace odobench {

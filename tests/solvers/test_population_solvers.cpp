@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "problems/classic/classic_problems.hpp"
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 #include "solvers/lattice/coordinate_search.hpp"
 #include "solvers/lattice/greedy_scan.hpp"
 #include "solvers/population/genetic_thesis.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/valley_problem.hpp"
-#include "tests/support/vitko_problem.hpp"
+#include "tests/support/data/valley_problem.hpp"
+#include "tests/support/data/vitko_problem.hpp"
 
 namespace odobench {
 namespace {

@@ -13,7 +13,7 @@
 #include "problems/entropy/window_problem.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
-#include "tests/support/entropy_windows.hpp"
+#include "tests/support/data/entropy_windows.hpp"
 
 namespace odobench {
 namespace {

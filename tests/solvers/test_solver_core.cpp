@@ -9,7 +9,7 @@
 #include <set>
 
 #include "problems/classic/classic_problems.hpp"
-#include "solvers/box_quadratic.hpp"
+#include "solvers/box/box_quadratic.hpp"
 #include "solvers/local/levenberg_marquardt.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"

@@ -10,11 +10,11 @@
 #include "datasets/import/vitko2024/vitko2024.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/classic/classic_problems.hpp"
+#include "solvers/certificate/optimality.hpp"
+#include "solvers/certificate/verdict.hpp"
 #include "solvers/libraries/ceres_solver.hpp"
-#include "solvers/optimality.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
-#include "solvers/verdict.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace odobench {

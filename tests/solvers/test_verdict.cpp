@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "problems/classic/classic_problems.hpp"
-#include "solvers/box_quadratic.hpp"
+#include "solvers/box/box_quadratic.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/solve.hpp"
 

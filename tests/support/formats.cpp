@@ -11,11 +11,11 @@
 #include "datasets/dataset.hpp"
 #include "datasets/native/recording_file.hpp"
 #include "datasets/robot_4wis4wid.hpp"
-#include "tests/support/entropy_windows.hpp"
-#include "tests/support/filter_run_files.hpp"
+#include "tests/support/data/entropy_windows.hpp"
+#include "tests/support/data/filter_run_files.hpp"
+#include "tests/support/data/synthetic_recording.hpp"
 #include "tests/support/in_process.hpp"
 #include "tests/support/source_dir.hpp"
-#include "tests/support/synthetic_recording.hpp"
 
 namespace odobench::testing {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/random.hpp"
-#include "solvers/derivative_check.hpp"
+#include "solvers/certificate/derivative_check.hpp"
 #include "solvers/solve.hpp"
 
 namespace odobench {

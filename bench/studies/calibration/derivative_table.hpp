@@ -1,5 +1,5 @@
-// `bench run --check-derivatives`: what problems state against differences (solvers/derivative_check.hpp), as
-// a table.
+// `bench run --check-derivatives`: what problems state against differences, as a table
+// (solvers/certificate/derivative_check.hpp).
 #pragma once
 
 #include <vector>

@@ -39,8 +39,8 @@ inline constexpr double kPromiseLimit = 1e-8;
 std::optional<OptimalityCheck> check_optimality(const Problem& problem, const ConstVectorRef& x);
 
 // What the bounded Gauss-Newton step promises by derivatives that are differences of residuals alone
-// (solvers/derivative_check.hpp): a second way to the same number, for those who doubt the problem's own.
-// Nothing where the problem has no residuals, or where differences do not determine them.
+// (solvers/certificate/derivative_check.hpp): a second way to the same number, for those who doubt the
+// problem's own. Nothing where the problem has no residuals, or where differences do not determine them.
 std::optional<double> promise_by_differences(const Problem& problem, const ConstVectorRef& x);
 
 // The same bounded Gauss-Newton promise for methods that want to know whether to go on: derivatives e at u,

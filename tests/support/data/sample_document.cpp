@@ -1,4 +1,4 @@
-#include "tests/support/sample_document.hpp"
+#include "tests/support/data/sample_document.hpp"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/filter_run_files.hpp"
+#include "tests/support/data/filter_run_files.hpp"
+#include "tests/support/data/small_dataset.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/run_process.hpp"
-#include "tests/support/small_dataset.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace odobench {

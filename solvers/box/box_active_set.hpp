@@ -1,5 +1,5 @@
 // Primal active-set method for strictly convex quadratic models on a box, shared by its two forms: H and g
-// (solvers/box_quadratic.hpp) and A and b (solvers/box_least_squares.hpp).
+// (solvers/box/box_quadratic.hpp) and A and b (solvers/box/box_least_squares.hpp).
 #pragma once
 
 #include <algorithm>

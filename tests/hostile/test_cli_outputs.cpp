@@ -12,7 +12,7 @@
 
 #include "base/text.hpp"
 #include "reports/records/record.hpp"
-#include "tests/support/example_runs.hpp"
+#include "tests/support/data/example_runs.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/source_dir.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "problems/problem.hpp"
-#include "solvers/box.hpp"
+#include "solvers/box/box.hpp"
 
 namespace odobench {
 

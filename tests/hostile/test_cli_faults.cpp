@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "reports/records/record.hpp"
-#include "tests/support/entropy_windows.hpp"
+#include "tests/support/data/entropy_windows.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/source_dir.hpp"
 

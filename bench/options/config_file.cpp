@@ -1,4 +1,4 @@
-#include "bench/verbs/config_file.hpp"
+#include "bench/options/config_file.hpp"
 
 #include <fmt/format.h>
 

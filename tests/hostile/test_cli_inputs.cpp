@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/records/record.hpp"
-#include "tests/support/example_runs.hpp"
+#include "tests/support/data/example_runs.hpp"
 #include "tests/support/formats.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/source_dir.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/derivative_check.hpp"
+#include "solvers/certificate/derivative_check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "solvers/linear_model.hpp"
+#include "solvers/box/linear_model.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/box_least_squares.hpp"
+#include "solvers/box/box_least_squares.hpp"
 
 namespace odobench {
 

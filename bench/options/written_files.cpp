@@ -1,4 +1,4 @@
-#include "bench/verbs/written_files.hpp"
+#include "bench/options/written_files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "bench/verbs/filter_options.hpp"
+#include "bench/options/filter_options.hpp"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
 #include "bench/catalogue/number_text.hpp"
-#include "bench/verbs/common_options.hpp"
+#include "bench/options/common_options.hpp"
 
 namespace odobench {
 namespace {

@@ -1,4 +1,4 @@
-#include "bench/verbs/common_options.hpp"
+#include "bench/options/common_options.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "base/text.hpp"
 #include "bench/catalogue/number_text.hpp"
 #include "bench/catalogue/option_values.hpp"
-#include "bench/verbs/config_file.hpp"
+#include "bench/options/config_file.hpp"
 #include "solvers/options.hpp"
 
 namespace odobench {

@@ -1,8 +1,8 @@
-#include "solvers/box_least_squares.hpp"
+#include "solvers/box/box_least_squares.hpp"
 
 #include <Eigen/QR>
 
-#include "solvers/box_active_set.hpp"
+#include "solvers/box/box_active_set.hpp"
 
 namespace odobench {
 namespace {

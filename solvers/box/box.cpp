@@ -1,4 +1,4 @@
-#include "solvers/box.hpp"
+#include "solvers/box/box.hpp"
 
 #include <algorithm>
 #include <cmath>

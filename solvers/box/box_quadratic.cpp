@@ -1,8 +1,8 @@
-#include "solvers/box_quadratic.hpp"
+#include "solvers/box/box_quadratic.hpp"
 
 #include <Eigen/Cholesky>
 
-#include "solvers/box_active_set.hpp"
+#include "solvers/box/box_active_set.hpp"
 
 namespace odobench {
 namespace {

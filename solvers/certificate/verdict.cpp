@@ -1,4 +1,4 @@
-#include "solvers/verdict.hpp"
+#include "solvers/certificate/verdict.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "base/range.hpp"
-#include "solvers/box.hpp"
-#include "solvers/box_active_set.hpp"
-#include "solvers/box_quadratic.hpp"
-#include "solvers/derivative_check.hpp"
-#include "solvers/linear_model.hpp"
-#include "solvers/optimality.hpp"
-#include "solvers/rounding.hpp"
+#include "solvers/box/box.hpp"
+#include "solvers/box/box_active_set.hpp"
+#include "solvers/box/box_quadratic.hpp"
+#include "solvers/box/linear_model.hpp"
+#include "solvers/certificate/derivative_check.hpp"
+#include "solvers/certificate/optimality.hpp"
+#include "solvers/certificate/rounding.hpp"
 
 namespace odobench {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/optimality.hpp"
+#include "solvers/certificate/optimality.hpp"
 
 #include <cmath>
 

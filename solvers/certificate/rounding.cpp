@@ -1,4 +1,4 @@
-#include "solvers/rounding.hpp"
+#include "solvers/certificate/rounding.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "solvers/boundary_map.hpp"
+#include "solvers/box/boundary_map.hpp"
 
 #include <fmt/format.h>
 
