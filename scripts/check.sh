@@ -35,6 +35,10 @@ base
 datasets                      datasets/robots
 datasets/csv
 datasets/entropy              datasets/csv
+datasets/logs                 datasets/csv
+datasets/logs/ros             datasets/logs
+datasets/logs/tables          datasets/logs datasets/csv
+datasets/logs/formats.cpp     datasets/
 datasets/native               datasets datasets/robots
 datasets/robots
 datasets/import               datasets datasets/csv
