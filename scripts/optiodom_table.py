@@ -2,12 +2,13 @@
 """Writes docs/optiodom.md: OptiOdom's data sets, every method that applies beside the published cells, and
 calibrations judged on the drives of other sets.
 
-usage: scripts/optiodom_table.py BENCH DATA REFERENCE [WORK] > docs/optiodom.md
+usage: scripts/optiodom_table.py [--figure=SVG] BENCH DATA REFERENCE [WORK] > docs/optiodom.md
 
 BENCH      the program
 DATA       folder with diff/, tricyc/, omni3/, omni4/ of OptiOdom's data, TYPE/PATH/STAMP/STAMP_*.csv
 REFERENCE  folder with robots.json (published cells, minima of an independent evaluation) and robots_extras.json
 WORK       folder for sets and run directories [a temporary one]
+SVG        the last tables as a picture: errors after calibration over nominal ones
 
 Exits 1, naming set and row, where a number differs from a published cell by more than the doc's words explain,
 or where our J is above the independent minimum.
@@ -15,10 +16,12 @@ or where our J is above the independent minimum.
 import csv
 import glob
 import json
+import math
 import os
 import subprocess
 import sys
 import tempfile
+from html import escape
 
 RULES = {"diff": "midpoint", "tricyc": "midpoint", "omni3": "optiodom-omni", "omni4": "optiodom-omni"}
 STARTS = {"diff": "censi", "tricyc": "kallasi"}
@@ -33,6 +36,7 @@ CELLS = ["max_position", "max_heading", "final_position", "final_heading"]
 PRINTED = ["max_position_m", "max_heading_deg", "final_position_m", "final_heading_deg"]
 PUBLISHED = {"classical:umbmark": "umbmark", "classical:jung_chung_optiodom": "jung_chung",
              "classical:ivanjko": "ivanjko", "classical:kallasi": "kallasi", "classical:lin": "lin"}
+CELL = 42  # of the figure, pixels
 failures = []
 
 
@@ -210,7 +214,8 @@ def ends_section(sets):
     print()
 
 
-def transfer_section(sets, extras):
+def transfer_section(sets, extras, ratios):
+    """`ratios`: filled with kind -> (names of sets, rows of errors over nominal errors)"""
     known = {(t["calibrated_on"], t["tested_on"]): t for t in extras["transfer"]}
     worst = 0
     for kind in RULES:
@@ -220,8 +225,10 @@ def transfer_section(sets, extras):
         print("|---|" + "---|" * len(group))
         print("| nominal | " + " | ".join("{:.0f} / {:.1f}".format(1000 * s.rows["nominal"]["cells"][0],
                                                                    s.rows["nominal"]["cells"][1]) for s in group) + " |")
+        ratios[kind] = [s.folder[len(kind) + 1:] for s in group], []
         for a in group:
             cells = []
+            ratios[kind][1].append([])
             for b in group:
                 rows = tables("evaluate", *b.options, "--parameters=" + a.best_runs())
                 row = next(r for label, r in rows.items() if label != "nominal")["cells"]
@@ -231,12 +238,55 @@ def transfer_section(sets, extras):
                     worst = max(worst, difference)
                     if difference > 1e-5:
                         failures.append(f"{a.folder} on {b.folder}: {row[0]} m, expected {expected['max_position_m']}")
+                ratios[kind][1][-1].append(row[0] / b.rows["nominal"]["cells"][0])
                 bold = "**" if a is b else ""
                 sign = " !" if row[0] > b.rows["nominal"]["cells"][0] else ""
                 cells.append(f"{bold}{1000 * row[0]:.0f} / {row[1]:.1f}{bold}{sign}")
             print(f"| {a.folder[len(kind) + 1:]} | " + " | ".join(cells) + " |")
         print()
     return worst
+
+
+def ratio_colour(ratio):
+    """Blue below 1, orange above, white at 1; full at a factor of 5."""
+    share = min(1, abs(math.log(ratio)) / math.log(5))
+    return "#" + "".join(f"{round(255 + share * (end - 255)):02x}" for end in ((42, 106, 168) if ratio < 1 else (214, 110, 34)))
+
+
+def robot_square(kind, names, rows, x0, y0):
+    """SVG elements of one robot's square, its first cell at (x0, y0)."""
+    def short(name):
+        return escape(f"{name.split('/')[0]} {name[-4:]}")
+    parts = [f'<text x="{x0 - 8}" y="{y0 - 14}" class="kind">{escape(kind)}</text>']
+    for i, name in enumerate(names):
+        at = CELL * i
+        parts.append(f'<text transform="translate({x0 + at + CELL / 2 + 4:g} {y0 - 8}) rotate(-40)">{short(name)}</text>')
+        parts.append(f'<text x="{x0 - 8}" y="{y0 + at + 26}" class="row">{short(name)}</text>')
+        for j, ratio in enumerate(rows[i]):
+            home = ' class="home"' if i == j else ""
+            ink = "#fff" if abs(math.log(ratio)) > math.log(3) else "#222"
+            parts.append(f'<rect x="{x0 + CELL * j}" y="{y0 + at}" width="{CELL - 3}" height="{CELL - 3}" rx="4" '
+                         f'fill="{ratio_colour(ratio)}"{home}/>')
+            parts.append(f'<text x="{x0 + CELL * j + CELL / 2 - 2:g}" y="{y0 + at + 25}" class="value" fill="{ink}">'
+                         f'{f"{ratio:.2f}" if ratio < 9.995 else f"{ratio:.0f}"}</text>')
+    return parts
+
+
+def travel_figure(ratios):
+    """A square of cells per robot: calibrated on the row's drives, judged on the column's. The first robot, which has
+    most sets, stands to the left of the others."""
+    left, top, parts, y, height, width = 112, 92, [], 0, 0, 0
+    for index, (kind, (names, rows)) in enumerate(ratios.items()):
+        x0 = left if index == 0 else 2 * left + 60 + CELL * len(next(iter(ratios.values()))[0])
+        parts += robot_square(kind, names, rows, x0, y + top)
+        y = 0 if index == 0 else y + top + CELL * len(names)
+        height = max(height, top + CELL * len(names) if index == 0 else y)
+        width = max(width, x0 + CELL * len(names) + 48)
+    style = ("text{font:12px sans-serif;fill:#222}.kind{font:bold 15px sans-serif;text-anchor:end}.row{text-anchor:end}"
+             '.value{text-anchor:middle}.value[fill="#fff"]{fill:#fff}.home{stroke:#222;stroke-width:2}')
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height + 8}" role="img" '
+            'aria-label="Largest position error after calibration over that with nominal values, on drives of other sets">\n'
+            f'<style>{style}</style>\n<rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join(parts) + "\n</svg>\n")
 
 
 def main():
@@ -251,7 +301,11 @@ def main():
         print(part, end="")
         section(sets)
     print(parts[3], end="")
-    worst = transfer_section(sets, extras)
+    ratios = {}
+    worst = transfer_section(sets, extras, ratios)
+    if figure:
+        with open(figure, "w") as file:
+            file.write(travel_figure(ratios))
     print(parts[4].replace("WORST", f"{1000 * worst:.2g}"), end="")
     for line in failures:
         print("optiodom_table: " + line, file=sys.stderr)
@@ -259,6 +313,7 @@ def main():
 
 
 if __name__ == "__main__":
+    figure = sys.argv.pop(1)[len("--figure="):] if sys.argv[1:] and sys.argv[1].startswith("--figure=") else None
     if len(sys.argv) not in (4, 5):
         sys.exit(__doc__.strip())
     program, data, reference_folder = (os.path.abspath(word) for word in sys.argv[1:4])

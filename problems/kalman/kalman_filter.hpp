@@ -18,11 +18,9 @@
 // A process model M has
 //     static constexpr int kStates, kNoises;          (Eigen::Dynamic allowed, both together)
 //     using Input = ...;
-//     State move(x, w, u, dt) const;                  f, w (p) the process noise, of mean 0 and covariance Lq
-//     Lq'
-//     State linearise(x, w, u, dt, F, G) const;       fills df/dx (n x n), df/dw (n x p), returns f: what
-//     both need is
-//                                                     computed once
+//     State move(x, w, u, dt) const;                  f; w (p) the process noise, mean 0, covariance Lq Lq'
+//     State linearise(x, w, u, dt, F, G) const;       fills df/dx (n x n) and df/dw (n x p), returns f: what
+//                                                     they share is computed once
 // and a sensor
 //     static constexpr int kSize;
 //     Value measure(x) const;  Matrix jacobian(x) const;      h (m), dh/dx (m x n)
@@ -90,6 +88,12 @@ class KalmanFilter {
 
  private:
   using Joint = Eigen::Matrix<double, kJoint, kJoint>;
+  // Corrects a vector v of covariance l l' by one number: innovation = h'v + an error of this sigma. Fills the
+  // gain, v += gain * innovation being the caller's, and l.
+  template <int Size>
+  static Innovation<1> correct_by_scalar(const Eigen::Matrix<double, Size, 1>& h, double innovation,
+                                         double sigma, double gate, Eigen::Matrix<double, Size, Size>& l,
+                                         Eigen::Matrix<double, Size, 1>& gain);
   Innovation<1> correct_noise(Noise& w, NoiseFactor& lq, const ProcessMeasurement<kN, kW>& m,
                               double gate) const;
   Innovation<1> correct_joint(Noise& w, Joint& l, const ProcessMeasurement<kN, kW>& m, double gate);
@@ -157,49 +161,49 @@ void KalmanFilter<M>::measure_innovation(Innovation<Z>& out, double gate) {
   out.accepted = out.nis <= gate;
 }
 
+template <class M>
+template <int Size>
+Innovation<1> KalmanFilter<M>::correct_by_scalar(const Eigen::Matrix<double, Size, 1>& h, double innovation,
+                                                 double sigma, double gate,
+                                                 Eigen::Matrix<double, Size, Size>& l,
+                                                 Eigen::Matrix<double, Size, 1>& gain) {
+  constexpr int kWide = Size == Eigen::Dynamic ? Eigen::Dynamic : Size + 1;
+  const Eigen::Matrix<double, Size, 1> a = l.transpose() * h;
+  const double variance = a.squaredNorm() + sigma * sigma;
+  Innovation<1> out;
+  out.nu[0] = innovation;
+  out.factor(0, 0) = std::sqrt(variance);
+  measure_innovation<1>(out, gate);
+  if (!out.accepted) return out;
+  gain = l * a / variance;
+  Eigen::Matrix<double, Size, kWide> wide(l.rows(), l.cols() + 1);
+  wide.template leftCols<Size>(l.cols()) = l - gain * a.transpose();
+  wide.col(l.cols()) = gain * sigma;
+  l = lower_triangular<Size, kWide>(wide);
+  return out;
+}
+
 // The measurement says nothing about the state: only (w, Lq) changes.
 template <class M>
 Innovation<1> KalmanFilter<M>::correct_noise(Noise& w, NoiseFactor& lq, const ProcessMeasurement<kN, kW>& m,
                                              double gate) const {
-  constexpr int kWide = kW == Eigen::Dynamic ? Eigen::Dynamic : kW + 1;
-  const Noise a = lq.transpose() * m.hw.transpose();
-  const double variance = a.squaredNorm() + m.sigma * m.sigma;
-  Innovation<1> out;
-  out.nu[0] = m.innovation;
-  out.factor(0, 0) = std::sqrt(variance);
-  measure_innovation<1>(out, gate);
-  if (!out.accepted) return out;
-  const Noise k = lq * a / variance;
-  w += k * m.innovation;
-  Eigen::Matrix<double, kW, kWide> wide(lq.rows(), lq.cols() + 1);
-  wide.template leftCols<kW>(lq.cols()) = lq - k * a.transpose();
-  wide.col(lq.cols()) = k * m.sigma;
-  lq = lower_triangular<kW, kWide>(wide);
+  Noise gain;
+  const Innovation<1> out = correct_by_scalar<kW>(m.hw.transpose(), m.innovation, m.sigma, gate, lq, gain);
+  if (out.accepted) w += gain * m.innovation;
   return out;
 }
 
 template <class M>
 Innovation<1> KalmanFilter<M>::correct_joint(Noise& w, Joint& l, const ProcessMeasurement<kN, kW>& m,
                                              double gate) {
-  constexpr int kWide = kJoint == Eigen::Dynamic ? Eigen::Dynamic : kJoint + 1;
   const Eigen::Index n = x_.size();
-  Eigen::Matrix<double, kJoint, 1> h(l.rows());
+  Eigen::Matrix<double, kJoint, 1> h(l.rows()), gain;
   h.template head<kN>(n) = m.hx.transpose();
   h.template segment<kW>(n, w.size()) = m.hw.transpose();
-  const Eigen::Matrix<double, kJoint, 1> a = l.transpose() * h;
-  const double variance = a.squaredNorm() + m.sigma * m.sigma;
-  Innovation<1> out;
-  out.nu[0] = m.innovation;
-  out.factor(0, 0) = std::sqrt(variance);
-  measure_innovation<1>(out, gate);
+  const Innovation<1> out = correct_by_scalar<kJoint>(h, m.innovation, m.sigma, gate, l, gain);
   if (!out.accepted) return out;
-  const Eigen::Matrix<double, kJoint, 1> k = l * a / variance;
-  x_ += k.template head<kN>(n) * m.innovation;
-  w += k.template segment<kW>(n, w.size()) * m.innovation;
-  Eigen::Matrix<double, kJoint, kWide> wide(l.rows(), l.cols() + 1);
-  wide.template leftCols<kJoint>(l.cols()) = l - k * a.transpose();
-  wide.col(l.cols()) = k * m.sigma;
-  l = lower_triangular<kJoint, kWide>(wide);
+  x_ += gain.template head<kN>(n) * m.innovation;
+  w += gain.template segment<kW>(n, w.size()) * m.innovation;
   return out;
 }
 
