@@ -88,8 +88,8 @@ class KalmanFilter {
 
  private:
   using Joint = Eigen::Matrix<double, kJoint, kJoint>;
-  // Corrects a vector v of covariance l l' by one number: innovation = h'v + an error of this sigma. Fills the
-  // gain, v += gain * innovation being the caller's, and l.
+  // Corrects a vector v of covariance l l' by one number: innovation = h'v + an error of this sigma. Fills
+  // the gain (v += gain * innovation is the caller's to do) and l.
   template <int Size>
   static Innovation<1> correct_by_scalar(const Eigen::Matrix<double, Size, 1>& h, double innovation,
                                          double sigma, double gate, Eigen::Matrix<double, Size, Size>& l,
