@@ -178,6 +178,14 @@ TEST_F(CliRobots, ATrackEnteredTwiceAsWideIsNamed) {
               Not(HasSubstr("common factor")));
 }
 
+TEST_F(CliRobots, AnotherRuleThatExplainsTheDrivesIsNamed) {
+  const std::string set = (folder_ / "demo/set.json").string();
+  ASSERT_EQ(run_bench({"demo", "--robot=diff", "--out=" + (folder_ / "demo").string()}).exit_code, 0);
+  EXPECT_THAT(unwrapped(run_bench({"--solver=lm", "--data=" + set}).out), Not(HasSubstr("look as if")));
+  EXPECT_THAT(unwrapped(run_bench({"--solver=lm", "--data=" + set, "--integration=euler"}).out),
+              HasSubstr("look as if poses were summed up by the rule arc"));
+}
+
 TEST_F(CliRobots, AScenarioStatesTheGeometryOfItsRobot) {
   const std::string head =
       R"({"schema": "odobench-scenario", "schema_version": 1, "kind": "recordings", "name": "mine",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bench/studies/calibration/rule_remark.hpp"
 #include "bench/studies/calibration/wall_remark.hpp"
 #include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/context.hpp"
@@ -79,7 +80,7 @@ CellList plan_all(CellPlan plan, const SolverStudy& study, const Catalogue& cata
 }
 
 // Notes on the lowest run of each calibration. Returns whether there are any.
-bool add_wall_remarks(const std::vector<LoadedProblem>& loaded, std::vector<RunRecord>& records) {
+bool add_remarks(const std::vector<LoadedProblem>& loaded, std::vector<RunRecord>& records) {
   bool any = false;
   for (const LoadedProblem& one : loaded) {
     RunRecord* lowest = nullptr;
@@ -88,10 +89,11 @@ bool add_wall_remarks(const std::vector<LoadedProblem>& loaded, std::vector<RunR
           (lowest == nullptr || *r.cost < *lowest->cost))
         lowest = &r;
     if (lowest == nullptr) continue;
-    const std::string remark = wall_remark(one, *lowest);
-    if (remark.empty()) continue;
-    lowest->notes.push_back(remark);
-    any = true;
+    for (const std::string& remark : {wall_remark(one, *lowest), rule_remark(one, *lowest)}) {
+      if (remark.empty()) continue;
+      lowest->notes.push_back(remark);
+      any = true;
+    }
   }
   return any;
 }
@@ -117,7 +119,7 @@ void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded,
   recorder.move_to(runs.records);
   for (const LoadedProblem& one : loaded)
     if (one.calibration && folder.keeps()) folder.save(run_tracks(one, runs.records));
-  const bool remarked = !runs.interrupted && add_wall_remarks(loaded, runs.records);
+  const bool remarked = !runs.interrupted && add_remarks(loaded, runs.records);
   // Cells end in an order that depends on the threads; the finished file does not.
   if (remarked || !recorder.in_order()) folder.replace(runs.records);
 }
