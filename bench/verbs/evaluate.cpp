@@ -51,7 +51,7 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
   folder.require_free();
   TerminalWatcher watcher;
   const Evaluation found = evaluate_parameters(options.study, watcher, InterruptGuard::stop());
-  const std::vector<Table> tables = evaluation_tables(found.records);
+  const std::vector<Table> tables = evaluation_tables(found.records, found.records.front().notes);
   if (folder.keeps()) {
     const TrackSet tracks = run_tracks(found.loaded, found.records);
     folder.keep(found.records, tables, watcher, &tracks);

@@ -9,23 +9,13 @@
 #include <stdexcept>
 
 #include "base/range.hpp"
+#include "problems/information/combinations.hpp"
 
 namespace odobench {
 namespace {
 
 // Eigenvalues of J'J below this share of the largest are what rounding leaves of zero.
 constexpr double kRounding = 1e-15;
-// Entries of a sparse direction below this share of its largest are left out of its words.
-constexpr double kNegligible = 0.05;
-
-Vector scales_of(const std::vector<ParameterInfo>& parameters) {
-  Vector s(static_cast<Eigen::Index>(parameters.size()));
-  for (Eigen::Index i = 0; i < s.size(); ++i) {
-    const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
-    s[i] = p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
-  }
-  return s;
-}
 
 struct Totals {
   Matrix normal, scatter;
@@ -52,49 +42,11 @@ Totals totals(std::span<const DriveInformation> drives, const std::vector<int>& 
   return t;
 }
 
-// Reduced column echelon form with complete pivoting: each column has a 1 where the others have 0.
-Matrix sparse_basis(Matrix basis) {
-  for (Eigen::Index column = 0; column < basis.cols(); ++column) {
-    Eigen::Index row = 0, from = 0;
-    basis.rightCols(basis.cols() - column).cwiseAbs().maxCoeff(&row, &from);
-    basis.col(column).swap(basis.col(column + from));
-    basis.col(column) /= basis(row, column);
-    for (Eigen::Index other = 0; other < basis.cols(); ++other)
-      if (other != column) basis.col(other) -= basis(row, other) * basis.col(column);
-  }
-  for (Eigen::Index column = 0; column < basis.cols(); ++column) {
-    Eigen::Index row = 0;
-    basis.col(column).cwiseAbs().maxCoeff(&row);
-    basis.col(column) /= basis(row, column);
-  }
-  return basis;
-}
-
-// "a1, a3 against a2": larger in size on one side, smaller on the other; nominal values may be negative.
-std::string words(const Vector& q, const std::vector<ParameterInfo>& parameters) {
-  std::string one, other;
-  double first = 0;
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
-    if (std::abs(q[i]) < kNegligible) continue;
-    const double sign = q[i] * (p.nominal < 0 ? -1 : 1);
-    if (first == 0) first = sign;
-    std::string& side = sign * first > 0 ? one : other;
-    side += (side.empty() ? "" : ", ") + p.name;
-  }
-  if (other.empty()) return one.find(',') == std::string::npos ? one + " alone" : one + " together";
-  return one + " against " + other;
-}
-
-}  // namespace
-
-namespace {
-
 // H and g of one recording in relative parameters, of those that are free.
 class RobotEquations {
  public:
   RobotEquations(const Robot& robot, const CalibrationOptions& options, InstructionSet kernel)
-      : robot_(robot), options_(options), kernel_(kernel), scale_(scales_of(free_parameters(robot))) {
+      : robot_(robot), options_(options), kernel_(kernel), scale_(relative_scales(free_parameters(robot))) {
     for (std::size_t i = 0; i < robot.parameters.size(); ++i)
       if (robot.parameters[i].lower < robot.parameters[i].upper)
         free_.push_back(static_cast<Eigen::Index>(i));
@@ -204,7 +156,7 @@ DriveInformation drive_information(const std::string& name, const std::vector<Pa
                                    const std::vector<Recording>& replicas, const Vector& truth,
                                    InstructionSet kernel) {
   require_replicas(name, replicas.size());
-  const Vector scale = scales_of(parameters);
+  const Vector scale = relative_scales(parameters);
   const Eigen::Index n = scale.size();
   DriveInformation d{name, Matrix::Zero(n, n), Vector::Zero(n), Matrix::Zero(n, n)};
   const auto count = static_cast<double>(replicas.size());
@@ -224,7 +176,7 @@ DriveInformation drive_information(const std::string& name, const std::vector<Pa
 DriveInformation ideal_information(const std::string& name, const std::vector<ParameterInfo>& parameters,
                                    const Recording& recording, const Vector& truth, double sigma,
                                    InstructionSet kernel) {
-  const Vector scale = scales_of(parameters);
+  const Vector scale = relative_scales(parameters);
   NormalEquations e;
   CalibrationProblem(parameters, {recording}, kernel).normal_equations(truth, e);
   const Matrix normal = scale.asDiagonal() * e.jtj * scale.asDiagonal();
@@ -267,7 +219,7 @@ PlanAnalysis analyse_drives(std::span<const DriveInformation> drives, const std:
   }
   a.undetermined = sparse_basis(undetermined.leftCols(count));
   for (Eigen::Index k = 0; k < count; ++k)
-    a.undetermined_words.push_back(words(a.undetermined.col(k), parameters));
+    a.undetermined_words.push_back(combination_words(a.undetermined.col(k), parameters));
   return a;
 }
 
@@ -275,7 +227,7 @@ std::vector<Proposal> propose_drives(std::span<const DriveInformation> drives, s
                                      const DriveInformation& fixed,
                                      const std::vector<ParameterInfo>& parameters, double wanted, int most) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
-  const Vector scale = scales_of(parameters);
+  const Vector scale = relative_scales(parameters);
   Matrix all = Matrix::Zero(n, n), noise = Matrix::Zero(n, n);
   for (const DriveInformation& d : drives) {
     all += d.normal;

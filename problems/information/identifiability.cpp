@@ -1,19 +1,19 @@
 #include "problems/information/identifiability.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+
+#include "problems/information/combinations.hpp"
 
 namespace odobench {
 namespace {
 
 double half_width(const ParameterInfo& p) {
   return (p.upper - p.lower) / 2;
-}
-double scale_of(const ParameterInfo& p) {
-  return p.nominal != 0 ? std::abs(p.nominal) : half_width(p);
 }
 
 // (J'J)^-1 over what J'J in doubles can tell, and the roots of its diagonal: infinite where that is nothing.
@@ -62,13 +62,13 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
   const Problem own = problem;
   NormalEquations e;
   own.normal_equations(x, e);
+  const Vector scale = relative_scales(parameters);
   Matrix scaled(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
       const Eigen::Index row = result.parameters[static_cast<std::size_t>(i)];
       const Eigen::Index column = result.parameters[static_cast<std::size_t>(j)];
-      scaled(i, j) = e.jtj(row, column) * scale_of(parameters[static_cast<std::size_t>(row)]) *
-                     scale_of(parameters[static_cast<std::size_t>(column)]);
+      scaled(i, j) = e.jtj(row, column) * scale[row] * scale[column];
     }
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
   const double freedom = static_cast<double>(problem.residual_count() - n);
@@ -99,25 +99,48 @@ std::map<std::string, std::vector<double>> identifiability_series(const Identifi
           {"residual_deviation", {id.residual_deviation}}};
 }
 
+std::vector<std::string> undetermined_combinations(const Problem& problem, const Identifiability& id) {
+  const auto n = static_cast<Eigen::Index>(id.parameters.size());
+  std::vector<ParameterInfo> free;
+  for (const Eigen::Index i : id.parameters)
+    free.push_back(problem.parameters()[static_cast<std::size_t>(i)]);
+  double box = 0;
+  const Vector scale = relative_scales(free);
+  for (Eigen::Index i = 0; i < n; ++i)
+    box += half_width(free[static_cast<std::size_t>(i)]) / scale[i] / static_cast<double>(n);
+  Eigen::Index told = n;
+  while (told > 0 && !(id.residual_deviation <= box * id.singular_values[told - 1])) --told;
+  const Matrix basis = sparse_basis(id.directions.rightCols(n - told));
+  std::vector<std::string> all;
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) all.push_back(combination_words(basis.col(k), free));
+  return all;
+}
+
 std::string identifiability_note(const Problem& problem, const Identifiability& id, const std::string& what) {
   std::string list;
   const auto n = static_cast<Eigen::Index>(id.parameters.size());
+  const Vector scale = relative_scales(problem.parameters());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const ParameterInfo& p =
-        problem.parameters()[static_cast<std::size_t>(id.parameters[static_cast<std::size_t>(i)])];
+    const Eigen::Index at = id.parameters[static_cast<std::size_t>(i)];
+    const ParameterInfo& p = problem.parameters()[static_cast<std::size_t>(at)];
     const double deviation = id.standard_deviations[i];
-    if (deviation * scale_of(p) > half_width(p))
+    if (deviation * scale[at] > half_width(p))
       list += (list.empty() ? "" : ", ") + p.name +
               (std::isfinite(deviation) ? fmt::format(" {:.1f} %", 100 * deviation) : " (no limit)");
   }
   if (list.empty()) return {};
+  const std::vector<std::string> blind = undetermined_combinations(problem, id);
   return fmt::format(
       "Barely determined ({}): the singular values of the scaled Jacobian span {:.3g} .. "
       "{:.2g}, and "
       "even if residuals were independent the relative standard deviation would exceed the half width of the "
-      "box for {}; the real one is several times larger. Trust the costs and errors more than these single "
+      "box for {}; the real one is several times larger. {}Trust the costs and errors more than these single "
       "parameters.",
-      what, id.singular_values[0], id.singular_values[n - 1], list);
+      what, id.singular_values[0], id.singular_values[n - 1], list,
+      blind.empty()
+          ? ""
+          : fmt::format("Changing {}, those after 'against' the other way, changes next to nothing. ",
+                        fmt::join(blind, "; or ")));
 }
 
 }  // namespace odobench

@@ -29,9 +29,14 @@ Identifiability identifiability(const Problem& problem, const ConstVectorRef& x)
 // The series of reports/records/record.hpp.
 std::map<std::string, std::vector<double>> identifiability_series(const Identifiability& identifiability);
 
-// One sentence: spread of the singular values and the parameters whose relative standard deviation exceeds
-// half the width of their box; "" when every parameter is determined better than its box.
-// `what` names the data and the point: "demo, at the result of lm".
+// The combinations whose relative standard deviation along their unit vector exceeds the mean relative half
+// width of the boxes, in words (combinations.hpp): "lx against ly".
+std::vector<std::string> undetermined_combinations(const Problem& problem,
+                                                   const Identifiability& identifiability);
+
+// A sentence or two: spread of the singular values, the parameters whose relative standard deviation exceeds
+// half the width of their box, and undetermined_combinations(); "" when every parameter is determined better
+// than its box. `what` names the data and the point: "demo, at the result of lm".
 std::string identifiability_note(const Problem& problem, const Identifiability& identifiability,
                                  const std::string& what);
 

@@ -178,6 +178,20 @@ TEST_F(CliRobots, ATrackEnteredTwiceAsWideIsNamed) {
               Not(HasSubstr("common factor")));
 }
 
+TEST_F(CliRobots, WhatDrivesDoNotTellIsSaidBeforeAndAfterCalibration) {
+  for (const auto& [robot, words] : std::vector<std::pair<std::string, std::string>>{
+           {"mecanum", "Changing lx against ly"}, {"diff", ""}}) {
+    const std::string set = (folder_ / robot / "set.json").string();
+    ASSERT_EQ(run_bench({"demo", "--robot=" + robot, "--out=" + (folder_ / robot).string()}).exit_code, 0);
+    for (const std::vector<std::string>& call : {std::vector<std::string>{"evaluate", "--data=" + set},
+                                                 std::vector<std::string>{"--solver=lm", "--data=" + set}}) {
+      const std::string said = unwrapped(run_bench(call).out);
+      EXPECT_THAT(said, HasSubstr(words));
+      EXPECT_EQ(said.find("Barely determined") == std::string::npos, words.empty());
+    }
+  }
+}
+
 TEST_F(CliRobots, AnotherRuleThatExplainsTheDrivesIsNamed) {
   const std::string set = (folder_ / "demo/set.json").string();
   ASSERT_EQ(run_bench({"demo", "--robot=diff", "--out=" + (folder_ / "demo").string()}).exit_code, 0);

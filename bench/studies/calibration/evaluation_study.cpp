@@ -9,6 +9,7 @@
 #include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/records.hpp"
+#include "problems/information/identifiability.hpp"
 
 namespace odobench {
 namespace {
@@ -21,6 +22,15 @@ void require_finite(const RunRecord& record) {
     throw DataError(
         fmt::format("parameters '{}' on data set '{}': the cost overflows, expected values of a robot's size",
                     record.label, record.dataset));
+}
+
+// What the data do not tell at the first of the parameter sets: before any calibration where that is nominal.
+void note_undetermined(Evaluation& evaluation) {
+  const ParameterSet& first = evaluation.sets.front();
+  const std::string note = identifiability_note(
+      evaluation.loaded.problem, identifiability(evaluation.loaded.problem, first.values),
+      fmt::format("{}, at {}", evaluation.loaded.dataset_name(), first.label));
+  if (!note.empty()) evaluation.records.front().notes.push_back(note);
 }
 
 }  // namespace
@@ -36,6 +46,7 @@ Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, c
     evaluation.records.push_back(evaluation_record(evaluation.loaded, set.label, set.values, context));
     require_finite(evaluation.records.back());
   }
+  note_undetermined(evaluation);
   for (RunRecord& record :
        classical_records(evaluation.loaded, study.classical, context, &evaluation.sets, watcher)) {
     if (record.kind == "evaluation") require_finite(record);

@@ -25,7 +25,8 @@ struct EvaluationStudy {
 struct Evaluation {
   LoadedProblem loaded;
   std::vector<ParameterSet> sets;
-  std::vector<RunRecord> records;  // one per set and classical method
+  // One per set and classical method; the first has a note where the data do not determine the parameters.
+  std::vector<RunRecord> records;
 };
 
 // Throws std::invalid_argument on parameters that are none, DataError on a bad set and where J or an error
