@@ -43,6 +43,7 @@ datasets/native               datasets datasets/robots
 datasets/robots
 datasets/import               datasets datasets/csv
 datasets/import/csv           datasets datasets/csv datasets/native datasets/robots
+datasets/import/logs          datasets datasets/csv datasets/import/csv datasets/logs datasets/native datasets/robots
 datasets/import/optiodom      datasets datasets/csv datasets/robots
 reports/records
 reports/statistics            reports/records

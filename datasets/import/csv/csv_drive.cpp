@@ -260,4 +260,12 @@ Travelled travelled(const Reference& reference) {
   return t;
 }
 
+std::string describe_drive(const Recording& r, const std::string& file) {
+  const Travelled t = travelled(r.reference);
+  return fmt::format("{}{}: {} samples, {:.2f} s, {:.2f} m, {:.1f} deg to the left, {:.1f} deg to the right",
+                     r.id, file.empty() ? "" : " (" + file + ")", r.size(),
+                     static_cast<double>(r.time_us.back()) * 1e-6, t.metres, t.left / kDegree,
+                     t.right / kDegree);
+}
+
 }  // namespace odobench::csv_import

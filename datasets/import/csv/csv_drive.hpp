@@ -41,4 +41,8 @@ struct Travelled {
 };
 Travelled travelled(const Reference& reference);
 
+// One line: id, samples, seconds, metres, degrees turned to the left and to the right; with the file's name
+// where there is one.
+std::string describe_drive(const Recording& recording, const std::string& file = "");
+
 }  // namespace odobench::csv_import

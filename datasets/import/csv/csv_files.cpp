@@ -82,4 +82,15 @@ NameParts name_parts(const fs::path& file) {
   return {stem.substr(0, end), number};
 }
 
+std::string as_id(const std::string& text) {
+  std::string id;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '_' || c == '-' || c == '.';
+    id += plain ? c : '_';
+  }
+  if (id.empty() || id.front() == '.') id.insert(0, 1, '_');
+  return id;
+}
+
 }  // namespace odobench::csv_import

@@ -23,4 +23,7 @@ struct NameParts {
 };
 NameParts name_parts(const std::filesystem::path& file);
 
+// A name as an id: letters, digits, _, - and . are left as they are, others become _.
+std::string as_id(const std::string& text);
+
 }  // namespace odobench::csv_import

@@ -31,18 +31,6 @@ struct DriveName {
   int repetition = 0;  // 0: the first that is free
 };
 
-// Letters, digits, _, - and . are left as they are.
-std::string as_id(const std::string& text) {
-  std::string id;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '_' || c == '-' || c == '.';
-    id += plain ? c : '_';
-  }
-  if (id.empty() || id.front() == '.') id.insert(0, 1, '_');
-  return id;
-}
-
 class CsvImporter {
  public:
   CsvImporter(const std::vector<std::string>& items, const fs::path& map) : files_(csv_files(items)) {
@@ -124,7 +112,7 @@ class CsvImporter {
     while (!ids_.insert(r.id).second) r.id += '_';
     if (trajectories_.insert(name.trajectory).second) set().trajectories.push_back({name.trajectory, ""});
     add_notes(drive, file_name(file));
-    report(r, file_name(file));
+    result_.report.push_back(describe_drive(r, file_name(file)));
     set().recordings.push_back(std::move(r));
   }
 
@@ -153,14 +141,6 @@ class CsvImporter {
     if (drive.usual_step < kShortestStep || drive.usual_step > kLongestStep)
       note(fmt::format("{}: rows are {:.4g} s apart: is the unit of \"{}\" right?", file, drive.usual_step,
                        shown(map_.time.column)));
-  }
-
-  void report(const Recording& r, const std::string& file) {
-    const Travelled t = travelled(r.reference);
-    result_.report.push_back(fmt::format(
-        "{} ({}): {} samples, {:.2f} s, {:.2f} m, {:.1f} deg to the left, {:.1f} deg to the right", r.id,
-        file, r.size(), static_cast<double>(r.time_us.back()) * 1e-6, t.metres, t.left / kDegree,
-        t.right / kDegree));
   }
 
   std::vector<fs::path> files_;

@@ -1,0 +1,215 @@
+#include "datasets/import/logs/log_map.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "base/angle.hpp"
+#include "base/json_node.hpp"
+#include "base/names.hpp"
+#include "base/text.hpp"
+#include "datasets/import/csv/csv_map.hpp"
+#include "datasets/import/logs/map_signals.hpp"
+#include "datasets/native/robot_json.hpp"
+
+namespace odobench::log_import {
+namespace {
+
+using csv_import::angle_scale;
+using csv_import::length_scale;
+
+double positive(const JsonNode& node, double most) {
+  const double value = node.number();
+  if (!(value > 0) || !(value <= most))
+    node.fail(fmt::format("{}", value), fmt::format("a number above 0, at most {}", most));
+  return value;
+}
+
+void read_format(const JsonNode& node, LogOptions& format) {
+  allow_keys(node, {"separator", "decimal", "comment", "header_rows", "encoding"});
+  format.separator = node.text_or_empty("separator");
+  format.decimal = node.text_or_empty("decimal");
+  format.comment = node.text_or_empty("comment");
+  format.encoding = node.text_or_empty("encoding");
+  if (node.has("header_rows")) format.header_rows = node.at("header_rows").small_integer();
+}
+
+MappedSource read_source(const JsonNode& node, const std::string& name) {
+  MappedSource source;
+  source.name = name;
+  if (!node.is_object()) {
+    source.topic = node.text();
+    return source;
+  }
+  allow_keys(node, {"topic", "struct", "prefix", "files", "format", "time", "time_unit", "offset_s"});
+  int given = 0;
+  for (const char* key : {"topic", "struct", "prefix"})
+    if (node.has(key)) {
+      source.topic = node.at(key).text();
+      ++given;
+    }
+  if (given > 1) node.fail("two of topic, struct and prefix", "one of them");
+  source.files = node.text_or_empty("files");
+  source.time = node.text_or_empty("time");
+  source.time_unit = node.text_or_empty("time_unit");
+  if (node.has("format")) read_format(node.at("format"), source.format);
+  if (!node.has("offset_s")) return source;
+  const JsonNode offset = node.at("offset_s");
+  // A text is told from a number by what reading it says.
+  bool text = true;
+  try {
+    (void)offset.text();
+  } catch (const DataError&) {
+    text = false;
+  }
+  if (!text)
+    source.offset_s = offset.number();
+  else if (offset.text() == "estimate")
+    source.offset_s.reset();
+  else
+    offset.fail('"' + shown(offset.text()) + '"', "a number of seconds or \"estimate\"");
+  return source;
+}
+
+void read_sources(const JsonNode& node, LogMap& map) {
+  for (const std::string& name : node.keys()) map.sources.push_back(read_source(node.at(name), name));
+  if (map.sources.empty()) node.fail("none", "at least one source");
+}
+
+MappedField read_reference(const JsonNode& node, const std::string& target, const LogMap& map) {
+  const bool angle = target == "reference.heading";
+  allow_keys(node, {"source", "field", "quaternion", "unit", "sign", "offset"});
+  MappedField field = read_field(node, target, map);
+  const std::string unit = node.has("unit") ? node.at("unit").text() : angle ? "rad" : "m";
+  const std::optional<double> scale = angle ? angle_scale(unit) : length_scale(unit);
+  if (!scale)
+    node.at("unit").fail('"' + shown(unit) + '"', angle ? "\"rad\" or \"deg\"" : "\"m\", \"cm\" or \"mm\"");
+  field.scale *= *scale;
+  if (!field.quaternion.empty() && !angle) node.at("quaternion").fail("one", "it of a heading only");
+  return field;
+}
+
+void read_signals(const JsonNode& node, LogMap& map) {
+  SignalReader signals(node, map);
+  for (const std::string& key : node.keys()) {
+    const JsonNode one = node.at(key);
+    if (key == "reference.x" || key == "reference.y" || key == "reference.heading" ||
+        key == "reference.theta")
+      map.reference.push_back(read_reference(one, key == "reference.theta" ? "reference.heading" : key, map));
+    else if (key.starts_with("gyro.") || key.starts_with("accel.") || key.starts_with("camera."))
+      map.others.push_back(read_other(one, key, map));
+    else
+      signals.take(key);
+  }
+  signals.finish();
+  for (const char* target : {"reference.x", "reference.y", "reference.heading"})
+    if (std::none_of(map.reference.begin(), map.reference.end(),
+                     [&](const MappedField& f) { return f.target == target; }))
+      node.fail(fmt::format("no \"{}\"", target),
+                "where the robot was: reference.x, reference.y and "
+                "reference.heading");
+  std::sort(map.reference.begin(), map.reference.end(), [](const MappedField& a, const MappedField& b) {
+    const auto place = [](const MappedField& f) {
+      return f.target == "reference.heading" ? 2 : f.target.back() - 'x';
+    };
+    return place(a) < place(b);
+  });
+  for (const MappedField& field : map.reference)
+    if (field.source != map.reference.front().source)
+      node.at(field.target)
+          .fail(fmt::format("the source \"{}\"", shown(field.source)),
+                "the same source for x, y and heading");
+}
+
+void read_mount(const JsonNode& node, LogMap& map) {
+  if (!node.is_object()) {
+    if (node.text() != "estimate") node.fail('"' + shown(node.text()) + '"', "numbers or \"estimate\"");
+    map.estimate_mount = true;
+    return;
+  }
+  allow_keys(node, {"x", "y", "yaw", "yaw_deg"});
+  if (node.has("x")) map.mount_x = node.at("x").number();
+  if (node.has("y")) map.mount_y = node.at("y").number();
+  if (node.has("yaw") && node.has("yaw_deg")) node.fail("yaw and yaw_deg", "one of them");
+  if (node.has("yaw")) map.mount_yaw = node.at("yaw").number();
+  if (node.has("yaw_deg")) map.mount_yaw = node.at("yaw_deg").number() * kDegree;
+}
+
+void read_drives(const JsonNode& node, LogMap& map) {
+  allow_keys(node, {"split", "standstill_s", "names", "marks"});
+  if (node.has("split")) {
+    const std::string split = node.at("split").text();
+    if (split != "none" && split != "standstill" && split != "marks")
+      node.at("split").fail('"' + shown(split) + '"', "\"none\", \"standstill\" or \"marks\"");
+    map.split = split == "none" ? Split::None : split == "marks" ? Split::Marks : Split::Standstill;
+  }
+  if (node.has("standstill_s")) map.standstill_s = positive(node.at("standstill_s"), 3600);
+  if (node.has("names"))
+    for (const JsonNode& name : node.at("names").elements()) map.names.push_back(name.text());
+  if (node.has("marks") != (map.split == Split::Marks))
+    node.fail(node.has("marks") ? "marks" : "no marks", "\"split\": \"marks\" together with \"marks\"");
+  if (!node.has("marks")) return;
+  for (const JsonNode& mark : node.at("marks").elements()) {
+    allow_keys(mark, {"from_s", "to_s", "name"});
+    map.marks.push_back({mark.at("from_s").number(), mark.at("to_s").number(), mark.text_or_empty("name")});
+    if (!(map.marks.back().from_s < map.marks.back().to_s))
+      mark.fail("from_s at or after to_s", "from before to");
+  }
+}
+
+void read_limits(const JsonNode& node, LogMap& map) {
+  allow_keys(node, {"max_gap_s", "max_wheel_gap_s", "min_drive_s"});
+  if (node.has("max_gap_s")) map.reference_gap_s = positive(node.at("max_gap_s"), 1e6);
+  map.wheel_gap_s = node.has("max_wheel_gap_s") ? positive(node.at("max_wheel_gap_s"), 1e6)
+                                                : std::max(map.wheel_gap_s, map.reference_gap_s / 2);
+  if (node.has("min_drive_s")) map.shortest_drive_s = positive(node.at("min_drive_s"), 1e6);
+}
+
+void check_schema(const JsonNode& root) {
+  const JsonNode schema = root.at("schema");
+  if (schema.text() != csv_import::kMapSchema)
+    schema.fail('"' + shown(schema.text()) + '"', fmt::format("\"{}\"", csv_import::kMapSchema));
+  const JsonNode version = root.at("schema_version");
+  if (version.integer() != csv_import::kMapSchemaVersion)
+    version.fail(fmt::format("version {}", version.integer()),
+                 fmt::format("{}", csv_import::kMapSchemaVersion));
+  allow_keys(root, {"schema", "schema_version", "name", "description", "source", "licence", "robot",
+                    "sources", "signals", "mount", "drives", "limits"});
+}
+
+}  // namespace
+
+const MappedSource& source_of(const LogMap& map, const std::string& name) {
+  return *std::find_if(map.sources.begin(), map.sources.end(),
+                       [&](const MappedSource& s) { return s.name == name; });
+}
+
+LogMap parse_log_map(std::string_view text, const std::string& file) {
+  const JsonNode root = JsonNode::parse(text, file);
+  check_schema(root);
+  LogMap map;
+  map.file = file;
+  map.name = root.at("name").text();
+  if (map.name.empty()) root.at("name").fail("an empty text", "a name");
+  map.description = root.text_or_empty("description");
+  map.source = root.text_or_empty("source");
+  map.licence = root.text_or_empty("licence");
+  map.robot = read_robot(root.at("robot"), 2);
+  read_sources(root.at("sources"), map);
+  if (root.has("limits")) read_limits(root.at("limits"), map);
+  read_signals(root.at("signals"), map);
+  if (root.has("mount")) read_mount(root.at("mount"), map);
+  if (root.has("drives")) read_drives(root.at("drives"), map);
+  return map;
+}
+
+bool is_log_map(std::string_view text, const std::string& file) {
+  const JsonNode root = JsonNode::parse(text, file);
+  return root.is_object() && (root.has("sources") || !root.has("time"));
+}
+
+}  // namespace odobench::log_import
