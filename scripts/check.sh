@@ -79,6 +79,7 @@ bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalo
 bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/
 tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/

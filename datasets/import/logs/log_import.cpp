@@ -38,7 +38,9 @@ class DatasetMaker {
     set_.provenance = {map.source, map.licence, "bench import", {}};
     set_.provenance.files.push_back({fs::path(map.file).filename().string(), loaded_.map_sha256});
     for (const SourceFile& file : loaded_.files) set_.provenance.files.push_back(file);
-    for (const LogCurves& log : loaded_.logs) add(log);
+    for (std::size_t k = 0; k < loaded_.logs.size(); ++k)
+      add(loaded_.logs[k],
+          k < adjustment_.offsets.size() ? adjustment_.offsets[k] : std::map<std::string, double>{});
     if (next_name_ < map.names.size())
       set_.notes.push_back(
           fmt::format("{} names of drives in the map, {} drives: names from \"{}\" on are not used",
@@ -47,8 +49,8 @@ class DatasetMaker {
   }
 
  private:
-  void add(const LogCurves& log) {
-    LogDrives drives = make_drives(loaded_.map, log, adjustment_.mount, adjustment_.offsets);
+  void add(const LogCurves& log, const std::map<std::string, double>& offsets) {
+    LogDrives drives = make_drives(loaded_.map, log, adjustment_.mount, offsets);
     for (const std::string& text : log.notes) set_.notes.push_back(printable(text));
     for (const std::string& text : drives.notes) set_.notes.push_back(printable(text));
     for (std::size_t k = 0; k < drives.recordings.size(); ++k) {

@@ -28,8 +28,9 @@ LoadedLogs load_logs(const std::filesystem::path& map, const std::vector<std::fi
 
 // What was found out about the logs and not said by the map.
 struct Adjustment {
-  std::map<std::string, double> offsets;  // source -> how much its clock runs ahead, beside the map's [s]
-  Mount mount;                            // in the place of the map's
+  // Of each log: source -> how much its clock runs ahead, beside what the map says [s]. Empty: nothing.
+  std::vector<std::map<std::string, double>> offsets;
+  Mount mount;  // in the place of the map's
 };
 Adjustment adjustment_of(const LogMap& map);
 
