@@ -36,7 +36,8 @@ datasets                      datasets/robots
 datasets/csv
 datasets/entropy              datasets/csv
 datasets/logs                 datasets/csv
-datasets/logs/ros             datasets/logs
+datasets/logs/ros             datasets/logs datasets/logs/ros/messages
+datasets/logs/ros/messages    datasets/logs
 datasets/logs/tables          datasets/logs datasets/csv
 datasets/logs/formats.cpp     datasets/
 datasets/native               datasets datasets/robots
