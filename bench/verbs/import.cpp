@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <stdexcept>
@@ -12,20 +13,26 @@
 #include "base/text.hpp"
 #include "bench/catalogue/importers.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
 #include "bench/options/written_files.hpp"
+#include "bench/studies/importing/log_study.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
 
 namespace odobench {
 namespace {
 
 struct ImportOptions {
-  std::string source;  // name of the importer
+  std::vector<std::string> what;  // name of an importer, or logs
   std::string from;
   std::string out;
   std::string map;       // of csv: what the columns are
-  bool propose = false;  // of csv: print such a map
+  bool propose = false;  // print such a map
+  bool show = false;     // print what stands in a log
+  LogOptions log;
+  std::vector<std::string> messages;  // files with definitions
   bool overwrite = false;
   std::string exclude;     // numbers of runs, separated by commas
   bool drop_lost = false;  // captured samples whose tracking was lost
@@ -43,16 +50,28 @@ std::string names_of(const std::vector<ImporterEntry>& importers, const char* be
 }
 
 void add_options(CLI::App& app, ImportOptions& o) {
-  app.add_option("source", o.source, names_of(known_importers(), " or "))->required();
+  app.add_option(
+         "what", o.what,
+         "logs of any format (bag, MCAP, rosbag2, CSV, MAT, npz, JSON lines, TUM, EuRoC, KITTI), or " +
+             names_of(known_importers(), ", ") + " with --from")
+      ->required()
+      ->type_name("LOG...");
   app.add_option("--from", o.from,
                  "folder with the raw files; of optiodom one or several, of csv files, folders and patterns, "
                  "separated by commas")
-      ->required()
       ->type_name("PLACE,...");
   app.add_option("--out", o.out, "data set to write; not with --propose")->type_name("SET.JSON");
-  app.add_option("--map", o.map, "csv: robot, columns and units (docs/import.md)")->type_name("MAP.JSON");
+  app.add_option("--map", o.map, "robot, signals and units (docs/import.md)")->type_name("MAP.JSON");
   app.add_flag("--propose", o.propose,
-               "csv: print a map for these files, with null for what they do not say");
+               "print a map for these logs, with null for what they do not say, and why it is as it is");
+  app.add_flag("--show", o.show, "print what stands in the logs: sources, rates, fields, first values");
+  app.add_flag("--keep-cut", o.log.keep_cut, "of a log that is cut off take what stands before");
+  app.add_option("--max-bytes", o.log.max_bytes, "decompressed bytes of one log [68719476736]")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--msg", o.messages, "definition of a message that a log lacks; may be given again")
+      ->type_name("FILE.msg")
+      ->allow_extra_args(false);
   app.add_option("--exclude", o.exclude, "optiodom: numbers of runs to leave out, separated by commas")
       ->type_name("N,N,...");
   app.add_flag("--drop-lost", o.drop_lost,
@@ -94,23 +113,28 @@ void check_options(const ImportOptions& o, const ImporterEntry& importer,
   const auto only = [&](const char* option, bool ImporterEntry::*takes) {
     return std::invalid_argument(fmt::format("{} is of {} only", option, names_of(importers, ", ", takes)));
   };
+  if (o.from.empty()) throw std::invalid_argument("--from is required");
+  if (o.show) throw std::invalid_argument("--show is of logs only");
   if (o.propose && !importer.maps) throw only("--propose", &ImporterEntry::maps);
   if (!o.map.empty() && !importer.maps) throw only("--map", &ImporterEntry::maps);
   if (o.drop_lost && !importer.drops_lost) throw only("--drop-lost", &ImporterEntry::drops_lost);
   if (!o.exclude.empty() && !importer.excludes) throw only("--exclude", &ImporterEntry::excludes);
-  if (o.propose) {
-    for (const auto& [given, option] : {std::pair{!o.map.empty(), "--map"},
-                                        {!o.out.empty(), "--out"},
-                                        {o.overwrite, "--overwrite"},
-                                        {o.json, "--json"}})
-      if (given) throw std::invalid_argument(fmt::format("--propose prints a map; leave out {}", option));
-    return;
-  }
+  if (o.propose) return;
   if (importer.maps && o.map.empty())
     throw std::invalid_argument(
         "import csv needs --map=MAP.JSON, which says what robot it is and what the columns are; "
         "`bench import csv --from=... --propose > map.json` makes one to fill in (docs/import.md)");
-  if (o.out.empty()) throw std::invalid_argument("--out is required");
+}
+
+// What is printed leaves no files.
+void check_printed(const ImportOptions& o) {
+  const char* what = o.propose ? "--propose prints a map" : "--show prints tables";
+  for (const auto& [given, option] : {std::pair{o.propose && o.show, "--show"},
+                                      {!o.map.empty(), "--map"},
+                                      {!o.out.empty(), "--out"},
+                                      {o.overwrite, "--overwrite"},
+                                      {o.propose && o.json, "--json"}})
+    if (given) throw std::invalid_argument(fmt::format("{}; leave out {}", what, option));
 }
 
 ExitCode propose(const ImportOptions& options) {
@@ -121,16 +145,65 @@ ExitCode propose(const ImportOptions& options) {
   return ExitCode::Success;
 }
 
-ExitCode import_command(const ImportOptions& options, const Catalogue& catalogue) {
-  const ImporterEntry& importer = catalogue.importer(options.source);
-  check_options(options, importer, catalogue.importers());
-  if (options.propose) return propose(options);
-  require_writable(options.out, existing_files(options.overwrite));
-  const Dataset dataset = import_from(options, importer);
+ExitCode save(const Dataset& dataset, const ImportOptions& options) {
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
   save_announced(dataset, options.out, options.overwrite, options.json);
   return ExitCode::Success;
+}
+
+LogOptions log_options(const ImportOptions& options) {
+  LogOptions log = options.log;
+  for (const std::string& file : options.messages) log.messages.emplace_back(file);
+  return log;
+}
+
+ExitCode show(const ImportOptions& options) {
+  std::vector<Table> tables;
+  for (const std::string& log : options.what)
+    for (Table& table : log_tables(log, log_options(options), InterruptGuard::stop()))
+      tables.push_back(std::move(table));
+  print_tables(tables, options.json ? Format::Json : Format::Console);
+  return ExitCode::Success;
+}
+
+ExitCode import_of_logs(const ImportOptions& options, const Catalogue& catalogue) {
+  if (!options.from.empty())
+    throw std::invalid_argument("--from is of " + names_of(catalogue.importers(), ", "));
+  if (options.drop_lost || !options.exclude.empty())
+    throw std::invalid_argument("--drop-lost and --exclude are not for logs");
+  if (options.show) return show(options);
+  if (options.map.empty())
+    throw std::invalid_argument(
+        "logs need --map=MAP.JSON, which says what robot it is and what their fields are; "
+        "`bench import LOG... --propose > map.json` makes one to fill in (docs/import.md)");
+  if (options.out.empty()) throw std::invalid_argument("--out is required");
+  require_writable(options.out, existing_files(options.overwrite));
+  TerminalWatcher watcher;
+  const LogStudy study{{options.what.begin(), options.what.end()}, options.map, log_options(options)};
+  ImportedLogs imported = import_logs(study, watcher, InterruptGuard::stop());
+  if (!options.quiet)
+    for (const std::string& line : imported.report) note(line);
+  return save(imported.dataset, options);
+}
+
+bool names_importer(const ImportOptions& options, const Catalogue& catalogue) {
+  const std::vector<ImporterEntry>& all = catalogue.importers();
+  return options.what.size() == 1 &&
+         (!options.from.empty() || std::any_of(all.begin(), all.end(), [&](const ImporterEntry& e) {
+           return e.name == options.what.front();
+         }));
+}
+
+ExitCode import_command(const ImportOptions& options, const Catalogue& catalogue) {
+  if (options.propose || options.show) check_printed(options);
+  if (!names_importer(options, catalogue)) return import_of_logs(options, catalogue);
+  const ImporterEntry& importer = catalogue.importer(options.what.front());
+  check_options(options, importer, catalogue.importers());
+  if (options.propose) return propose(options);
+  if (options.out.empty()) throw std::invalid_argument("--out is required");
+  require_writable(options.out, existing_files(options.overwrite));
+  return save(import_from(options, importer), options);
 }
 
 }  // namespace

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include "base/files.hpp"
+#include "datasets/logs/ros/ros_logs.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
 
 const std::vector<LogFormat>& log_formats() {
-  static const std::vector<LogFormat> all = {};
+  static const std::vector<LogFormat> all = ros_log_formats();
   return all;
 }
 

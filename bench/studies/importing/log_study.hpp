@@ -1,0 +1,33 @@
+// Logs to data sets, and a look at what stands in them: the study behind `bench import LOG...`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/stop.hpp"
+#include "bench/studies/watcher.hpp"
+#include "datasets/dataset.hpp"
+#include "datasets/logs/log_file.hpp"
+#include "reports/render/table.hpp"
+
+namespace odobench {
+
+struct LogStudy {
+  std::vector<std::filesystem::path> logs;
+  std::filesystem::path map;
+  LogOptions options;
+};
+
+struct ImportedLogs {
+  Dataset dataset;                  // what was repaired or left out stands in its notes
+  std::vector<std::string> report;  // signals, clocks, drives; a line each
+};
+
+// Warnings go to the watcher. Throws DataError, std::invalid_argument, Interruption.
+ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& stop);
+
+// "sources": format, rows, rate, longest gap, delay of each; "fields": type and first value of each.
+std::vector<Table> log_tables(const std::filesystem::path& log, const LogOptions& options, const Stop& stop);
+
+}  // namespace odobench
