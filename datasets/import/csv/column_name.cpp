@@ -125,4 +125,14 @@ ColumnName column_name(std::string_view name) {
   return column;
 }
 
+std::string class_of_wheels(std::vector<std::string> driven, const std::vector<std::string>& steered) {
+  std::sort(driven.begin(), driven.end());
+  const bool pair = driven == std::vector<std::string>{"left", "right"};
+  if (pair && steered.empty()) return "differential";
+  if (pair && steered == std::vector<std::string>{""}) return "bicycle";
+  if (pair && steered.size() == 2) return "ackermann";
+  if (driven == std::vector<std::string>{""} && steered == driven) return "tricycle";
+  return driven == std::vector<std::string>{"1", "2", "3"} && steered.empty() ? "omni3" : "";
+}
+
 }  // namespace odobench::csv_import

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace odobench::csv_import {
 
@@ -18,5 +19,8 @@ struct ColumnName {
 
 // "left_rad_s", "wheel_speed.right [rpm]", "Time (ms)", "gt_x", "steer_1_deg".
 ColumnName column_name(std::string_view name);
+
+// The class of robots whose wheels are called so; "" where they fit several or none.
+std::string class_of_wheels(std::vector<std::string> driven, const std::vector<std::string>& steered);
 
 }  // namespace odobench::csv_import

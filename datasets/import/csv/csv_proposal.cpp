@@ -165,20 +165,8 @@ class Proposal {
     return json;
   }
 
-  // Only what signals tell; others have several classes.
-  std::string kinematics() const {
-    std::vector<std::string> driven = driven_;
-    std::sort(driven.begin(), driven.end());
-    const bool pair = driven == std::vector<std::string>{"left", "right"};
-    if (pair && steered_.empty()) return "differential";
-    if (pair && steered_ == std::vector<std::string>{""}) return "bicycle";
-    if (pair && steered_.size() == 2) return "ackermann";
-    if (driven == std::vector<std::string>{""} && steered_ == driven) return "tricycle";
-    return driven == std::vector<std::string>{"1", "2", "3"} && steered_.empty() ? "omni3" : "";
-  }
-
   Json robot() {
-    const std::string kind = kinematics();
+    const std::string kind = class_of_wheels(driven_, steered_);
     Json parameters = Json::array();
     if (!kind.empty())
       for (const BoundParameter& p : robots::make_robot(robots::layout(kind)).parameters)

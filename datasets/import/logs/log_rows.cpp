@@ -21,7 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kMostDisorder = 1'000'000'000;  // ns
-constexpr std::array<const char*, 4> kQuaternion = {".x", ".y", ".z", ".w"};
+constexpr std::array<char, 4> kQuaternion = {'x', 'y', 'z', 'w'};
+
+// "pose.orientation.x" of messages, "qx" of tables, whose columns are called by one word.
+std::string quaternion_part(const std::string& path, char part) {
+  return path + (path.back() == 'q' ? "" : ".") + part;
+}
 
 std::vector<const MappedField*> fields_of(const LogMap& map, const std::string& source) {
   std::vector<const MappedField*> all;
@@ -35,7 +40,7 @@ std::vector<const MappedField*> fields_of(const LogMap& map, const std::string& 
 std::vector<std::string> paths_of(const MappedField& field) {
   if (field.quaternion.empty()) return {field.field};
   std::vector<std::string> paths;
-  for (const char* part : kQuaternion) paths.push_back(field.quaternion + part);
+  for (const char part : kQuaternion) paths.push_back(quaternion_part(field.quaternion, part));
   return paths;
 }
 
@@ -179,7 +184,8 @@ std::vector<double> LogRows::values(const MappedField& field) const {
   const SourceRows& source = of(field.source);
   if (field.quaternion.empty()) return source.values.at(field.field);
   std::array<const std::vector<double>*, 4> q{};
-  for (std::size_t i = 0; i < 4; ++i) q[i] = &source.values.at(field.quaternion + kQuaternion[i]);
+  for (std::size_t i = 0; i < 4; ++i)
+    q[i] = &source.values.at(quaternion_part(field.quaternion, kQuaternion[i]));
   std::vector<double> yaw(source.time_ns.size());
   for (std::size_t k = 0; k < yaw.size(); ++k) {
     const double x = (*q[0])[k], y = (*q[1])[k], z = (*q[2])[k], w = (*q[3])[k];

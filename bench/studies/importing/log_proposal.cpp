@@ -1,0 +1,242 @@
+#include "bench/studies/importing/log_proposal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "base/angle.hpp"
+#include "base/text.hpp"
+#include "bench/studies/importing/clock_offset.hpp"
+#include "bench/studies/importing/wheel_evidence.hpp"
+#include "datasets/import/csv/column_name.hpp"
+#include "datasets/import/logs/log_import.hpp"
+#include "datasets/import/logs/log_roles.hpp"
+#include "datasets/robots/layouts.hpp"
+
+namespace odobench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using log_import::LogCurves;
+using log_import::LogMap;
+using log_import::Role;
+using log_import::Roles;
+using log_import::SurveyedSource;
+
+constexpr int kStandInCounts = 1000;  // per turn, while nobody has said it
+
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+class Proposer {
+ public:
+  Proposer(const std::vector<std::filesystem::path>& logs, const LogOptions& options, const Stop& stop)
+      : logs_(logs),
+        options_(options),
+        stop_(stop),
+        sources_(log_import::survey_logs(logs, options, stop)),
+        roles_(find_roles(sources_)) {
+    for (const auto* list : {&roles_.wheels, &roles_.steering, &roles_.reference, &roles_.gyro})
+      for (const Role& role : *list) name_source(role.source);
+    for (const Role& role : roles_.wheels) signs_[role.which] = 1;
+  }
+
+  LogProposal propose() {
+    LogProposal out;
+    out.complete = !roles_.kinematics.empty() && roles_.reference.size() == 3;
+    if (out.complete) look_at_drives();
+    for (const SurveyedSource& source : sources_)
+      if (!names_.contains(number(source)) && source.source.unreadable.empty())
+        unused_.push_back(
+            shown(source.source.name.empty() ? source.file.filename().string() : source.source.name));
+    out.map = map(false).dump(2) + "\n";
+    out.reasons = std::move(roles_.reasons);
+    if (!unused_.empty()) out.reasons.push_back(fmt::format("not used: {}", fmt::join(unused_, ", ")));
+    return out;
+  }
+
+ private:
+  std::size_t number(const SurveyedSource& source) const {
+    return static_cast<std::size_t>(&source - sources_.data());
+  }
+  void say(std::string text) { roles_.reasons.push_back(std::move(text)); }
+
+  // "wheel_ticks" of "/robot/wheel_ticks"; of a table the file's name.
+  void name_source(std::size_t number) {
+    if (names_.contains(number)) return;
+    const SurveyedSource& source = sources_[number];
+    std::string name = source.source.name.substr(source.source.name.find_last_of('/') + 1);
+    if (name.empty()) name = sources_.size() == 1 ? "table" : source.file.stem().string();
+    name = printable(name);
+    while (std::any_of(names_.begin(), names_.end(), [&](const auto& other) { return other.second == name; }))
+      name += '_';
+    names_[number] = name;
+  }
+
+  Json sources() const {
+    Json all = Json::object();
+    for (const auto& [number, name] : names_) {
+      const SurveyedSource& surveyed = sources_[number];
+      Json source = Json::object();
+      if (!surveyed.source.name.empty()) source["topic"] = surveyed.source.name;
+      if (!surveyed.files.empty()) source["files"] = surveyed.files;
+      for (const LogField& field : surveyed.source.fields)
+        if (field.path == "header.stamp") source["time"] = "header.stamp";
+      if (offset_ && number == roles_.reference.front().source) source["offset_s"] = "estimate";
+      all[name] = std::move(source);
+    }
+    return all;
+  }
+
+  Json of(const Role& role) const {
+    Json json = {{"source", names_.at(role.source)}};
+    if (role.quaternion.empty())
+      json["field"] = role.field;
+    else
+      json["quaternion"] = role.quaternion;
+    return json;
+  }
+
+  // `stand_in`: with numbers where only the user knows.
+  Json signals(bool stand_in) const {
+    Json all = Json::object();
+    for (const Role& role : roles_.wheels) {
+      Json json = of(role);
+      json["unit"] = text_or_null(role.unit);
+      if (role.unit == "count") json["per_turn"] = stand_in ? Json(kStandInCounts) : Json(nullptr);
+      if (role.kind == "travel") json["radius"] = stand_in ? Json(1.0) : Json(nullptr);
+      if (const int sign = signs_.at(role.which); sign < 0) json["sign"] = sign;
+      const char* head = role.kind == "speed"    ? "wheel_speed"
+                         : role.kind == "travel" ? "wheel_travel"
+                                                 : "wheel_angle";
+      all[role.which.empty() ? std::string(head) : fmt::format("{}.{}", head, role.which)] = std::move(json);
+    }
+    for (const Role& role : roles_.steering) {
+      Json json = of(role);
+      json["unit"] = text_or_null(role.unit.empty() && stand_in ? "rad" : role.unit);
+      if (role.unit == "count") json["per_turn"] = stand_in ? Json(kStandInCounts) : Json(nullptr);
+      all[role.which.empty() ? std::string("steering") : "steering." + role.which] = std::move(json);
+    }
+    for (const Role& role : roles_.reference) {
+      Json json = of(role);
+      json["unit"] = role.unit;
+      all["reference." + role.which] = std::move(json);
+    }
+    for (const Role& role : roles_.gyro) {
+      Json json = of(role);
+      json["unit"] = role.unit;
+      json["optional"] = true;
+      all["gyro.z"] = std::move(json);
+    }
+    return all;
+  }
+
+  Json robot(bool stand_in) const {
+    Json parameters = Json::array();
+    if (!roles_.kinematics.empty())
+      for (const BoundParameter& p : robots::make_robot(robots::layout(roles_.kinematics)).parameters)
+        parameters.push_back(
+            {{"name", p.parameter.name},
+             {"nominal", p.parameter.unit == "m" && !stand_in ? Json(nullptr) : Json(p.parameter.nominal)}});
+    return {
+        {"name", "my_robot"}, {"kinematics", text_or_null(roles_.kinematics)}, {"parameters", parameters}};
+  }
+
+  Json map(bool stand_in) const {
+    Json all = {{"schema", "odobench-import"}, {"schema_version", 1}, {"name", "my_robot"}};
+    all["robot"] = robot(stand_in);
+    all["sources"] = sources();
+    all["signals"] = signals(stand_in);
+    if (mount_ && !stand_in) all["mount"] = "estimate";
+    all["drives"] = {{"split", "standstill"}, {"standstill_s", 3.0}};
+    all["limits"] = {{"max_gap_s", 0.2}};
+    return all;
+  }
+
+  LogCurves curves() const {
+    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
+    return read_curves(own, group_logs(own, logs_).front(), options_, stop_);
+  }
+
+  void look_at_drives() {
+    LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
+    LogCurves read = curves();
+    const bool clocks = roles_.wheels.front().source != roles_.reference.front().source;
+    std::optional<ClockOffset> offset = clock_offset(own, read);
+    if (roles_.kinematics == "differential") {
+      // One wheel that counts backwards would take its turns for distances.
+      LogCurves other = read;
+      for (double& v : other.signals.front().value) v = -v;
+      const std::optional<ClockOffset> turned = clock_offset(own, other);
+      if (turned && (!offset || turned->correlation > offset->correlation)) offset = turned;
+      if (!offset && clocks)
+        say("no turn that wheels and reference share: sides, signs and clocks not checked");
+      if (offset || !clocks) weigh_pair(read, clocks ? offset->seconds : 0);
+    }
+    mount_ = offset.has_value();
+    say(mount_ ? "mount of the tracked frame: \"estimate\", by the drives' turns; give x, y, yaw_deg if you "
+                 "know them"
+               : "mount of the tracked frame: taken as 0, since the drives do not turn enough to tell it");
+    if (!clocks) return;
+    offset_ = offset.has_value();
+    if (offset)
+      say(fmt::format(
+          "clock of the reference runs {:.3f} s ahead of the wheels (correlation {:.4f}): \"estimate\"",
+          offset->seconds, offset->correlation));
+  }
+
+  void weigh_pair(const LogCurves& read, double offset) {
+    const std::vector<WheelEvidence> found = wheel_evidence(read, offset);
+    if (found.size() != roles_.wheels.size()) return;
+    // The curves stand in the robot's order, the roles in the log's.
+    std::map<std::string, WheelEvidence> by_side;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      by_side[read.signals[i].name.substr(read.signals[i].name.find('.') + 1)] = found[i];
+    const bool swapped = by_side["left"].side() > by_side["right"].side();
+    for (Role& role : roles_.wheels) {
+      const WheelEvidence& e = by_side[role.which];
+      if (swapped) role.which = role.which == "left" ? "right" : "left";
+      signs_[role.which] = e.along < 0 ? -1 : 1;
+      const double radius = 1 / std::abs(e.along);
+      say(fmt::format("{}: {} of the reference's motion explained; sign {}; {}", role.which,
+                      fmt::format("{:.2f} %", 100 * e.explained), e.along < 0 ? '-' : '+',
+                      role.unit == "count"
+                          ? fmt::format("{:.6g} m a count: {:.0f} counts a turn at a radius of 0.05 m",
+                                        radius * 2 * kPi / kStandInCounts, kStandInCounts * 0.05 / radius)
+                          : fmt::format("radius about {:.4f} m", radius)));
+      if (role.unit == "rad" && (radius > 3 || radius < 0.003))
+        say(fmt::format("{}: a radius of {:.3g} m: is the unit right?", role.which, radius));
+    }
+    if (swapped)
+      say(roles_.by_place
+              ? "left and right: as the turns say, the other way round than they stand"
+              : "left and right: the turns say that the names are the wrong way round: exchanged");
+    const double track = std::abs(by_side["left"].side() - by_side["right"].side());
+    say(fmt::format("distance of the wheels about {:.3f} m", track));
+  }
+
+  const std::vector<std::filesystem::path>& logs_;
+  const LogOptions& options_;
+  const Stop& stop_;
+  std::vector<SurveyedSource> sources_;
+  Roles roles_;
+  std::map<std::size_t, std::string> names_;
+  std::map<std::string, int> signs_;
+  std::vector<std::string> unused_;
+  bool offset_ = false, mount_ = false;
+};
+
+}  // namespace
+
+LogProposal propose_log_map(const std::vector<std::filesystem::path>& logs, const LogOptions& options,
+                            const Stop& stop) {
+  return Proposer(logs, options, stop).propose();
+}
+
+}  // namespace odobench

@@ -1,0 +1,23 @@
+// How each wheel's rate goes with the reference's motion: sign, side and radius without knowing any.
+#pragma once
+
+#include <vector>
+
+#include "datasets/import/logs/log_curves.hpp"
+
+namespace odobench {
+
+struct WheelEvidence {
+  double along = 0;      // alpha, 1/m: rate of the wheel per velocity along the heading
+  double turning = 0;    // beta, without unit: rate per yaw rate
+  double explained = 0;  // share of the rate's sum of squares
+  // To the right of the tracked point positive, about in m.
+  double side() const { return along != 0 ? turning / along : 0; }
+};
+
+// w = alpha v + beta omega by least squares, of all signals; v and omega by differences over 0.2 s every
+// 50 ms, the reference's stamps less `offset` [s]. Empty where they share less than a second or the reference
+// does not both drive and turn.
+std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, double offset);
+
+}  // namespace odobench

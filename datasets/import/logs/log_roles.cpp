@@ -1,0 +1,201 @@
+#include "datasets/import/logs/log_roles.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+
+#include "base/text.hpp"
+#include "datasets/import/csv/column_name.hpp"
+#include "datasets/import/logs/reference_roles.hpp"
+
+namespace odobench::log_import {
+namespace {
+
+using csv_import::ColumnName;
+using csv_import::Meaning;
+
+struct WheelSet {
+  std::vector<Role> wheels, steering;
+  std::string kinematics;
+  bool by_place = false;
+  int rank = 100;  // the lower the better
+};
+
+bool whole_numbers(const LogField& field) {
+  return field.type.starts_with("int") || field.type.starts_with("uint") ||
+         (field.type == "number" && !field.first.empty() &&
+          field.first.find_first_not_of("0123456789-+") == std::string::npos);
+}
+
+bool numeric(const LogField& field) {
+  return field.type != "string" && field.type != "text" && field.type != "time" &&
+         field.type != "quaternion" && field.type != "bool";
+}
+
+std::string kind_of(const std::string& unit, bool steering) {
+  if (steering) return "angle";
+  if (unit == "rpm" || unit.ends_with("/s")) return "speed";
+  return unit == "m" || unit == "mm" || unit == "cm" ? "travel" : "position";
+}
+
+int rank_of(const WheelSet& set) {
+  if (set.kinematics.empty()) return 90;
+  const Role& first = set.wheels.front();
+  const int by_kind = first.kind == "position" ? (first.unit == "count" ? 1 : 0)
+                      : first.kind == "speed"  ? 2
+                                               : 3;
+  return by_kind + (set.by_place ? 10 : 0);
+}
+
+void finish(WheelSet& set) {
+  std::vector<std::string> driven, steered;
+  for (const Role& role : set.wheels) driven.push_back(role.which);
+  for (const Role& role : set.steering) steered.push_back(role.which);
+  set.kinematics = csv_import::class_of_wheels(driven, steered);
+  set.rank = rank_of(set);
+}
+
+// "left" of "position[name=left]"; nothing for other paths.
+std::optional<std::string> joint_of(const std::string& path, const std::string& array) {
+  const std::string head = array + "[name=";
+  if (!path.starts_with(head) || !path.ends_with("]")) return std::nullopt;
+  return path.substr(head.size(), path.size() - head.size() - 1);
+}
+
+WheelSet joints(const LogSource& source, std::size_t number, const std::string& array) {
+  WheelSet set;
+  for (const LogField& field : source.fields) {
+    const std::optional<std::string> joint = joint_of(field.path, array);
+    if (!joint) continue;
+    const ColumnName name = csv_import::column_name(*joint);
+    const bool steers = name.meaning == Meaning::Steering;
+    if (!steers && name.meaning != Meaning::Wheel) continue;
+    if (steers && array != "position") continue;
+    const std::string unit = array == "velocity" ? "rad/s" : "rad";
+    (steers ? set.steering : set.wheels)
+        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit});
+  }
+  finish(set);
+  return set;
+}
+
+WheelSet named(const LogSource& source, std::size_t number) {
+  WheelSet set;
+  for (const LogField& field : source.fields) {
+    if (!numeric(field) || field.path.find("header.") == 0) continue;
+    const ColumnName name = csv_import::column_name(field.path);
+    const bool steers = name.meaning == Meaning::Steering;
+    if (!steers && (name.meaning != Meaning::Wheel || name.odometry)) continue;
+    const bool fits = name.unit != "s" && name.unit != "ms" && name.unit != "us" && name.unit != "ns";
+    std::string unit = fits ? name.unit : "";
+    if (unit.empty() && whole_numbers(field)) unit = "count";
+    (steers ? set.steering : set.wheels)
+        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit});
+  }
+  finish(set);
+  return set;
+}
+
+// Two numbers side by side: "count[0]", "count[1]", or two columns without names.
+WheelSet pair_by_place(const LogSource& source, std::size_t number) {
+  WheelSet set;
+  set.by_place = true;
+  std::vector<const LogField*> pair;
+  std::string base;
+  for (const LogField& field : source.fields) {
+    if (!field.path.ends_with("[0]") || !numeric(field)) continue;
+    const std::string array = field.path.substr(0, field.path.size() - 3);
+    const auto element = [&](int i) -> const LogField* {
+      const std::string path = fmt::format("{}[{}]", array, i);
+      const auto found = std::find_if(source.fields.begin(), source.fields.end(),
+                                      [&](const LogField& f) { return f.path == path; });
+      return found == source.fields.end() ? nullptr : &*found;
+    };
+    if (element(1) == nullptr || element(2) != nullptr || array.find("covariance") != std::string::npos)
+      continue;
+    const bool angles = array.find("pos") != std::string::npos || array.find("angle") != std::string::npos;
+    if (!pair.empty() && !angles) continue;
+    pair = {&field, element(1)};
+    base = array;
+  }
+  if (pair.empty() && source.fields.size() == 3 && source.fields[1].path == "#2")
+    pair = {&source.fields[1], &source.fields[2]};
+  if (pair.empty()) return set;
+  const ColumnName name = csv_import::column_name(base);
+  std::string unit = name.unit;
+  if (unit.empty() && whole_numbers(*pair[0]) && whole_numbers(*pair[1])) unit = "count";
+  if (unit.empty()) unit = base.find("vel") != std::string::npos ? "rad/s" : "rad";
+  set.wheels = {{"left", number, pair[0]->path, "", kind_of(unit, false), unit},
+                {"right", number, pair[1]->path, "", kind_of(unit, false), unit}};
+  finish(set);
+  return set;
+}
+
+WheelSet wheels_of(const LogSource& source, std::size_t number) {
+  WheelSet best;
+  std::vector<WheelSet> sets;
+  if (source.type.ends_with("JointState"))
+    sets = {joints(source, number, "position"), joints(source, number, "velocity")};
+  else
+    sets = {named(source, number), pair_by_place(source, number)};
+  for (WheelSet& set : sets)
+    if (!set.wheels.empty() && set.rank < best.rank) best = std::move(set);
+  return best;
+}
+
+void find_gyro(const std::vector<SurveyedSource>& sources, Roles& roles) {
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    for (const LogField& field : sources[i].source.fields) {
+      const bool imu = sources[i].source.type.ends_with("/Imu") && field.path == "angular_velocity.z";
+      const ColumnName name = csv_import::column_name(field.path);
+      const bool by_name = numeric(field) && field.path.find("gyro") != std::string::npos &&
+                           (field.path.find('z') != std::string::npos);
+      if (!imu && !by_name) continue;
+      roles.gyro = {{"z", i, field.path, "", "", name.unit == "deg/s" ? "deg/s" : "rad/s"}};
+      roles.reasons.push_back(fmt::format("gyro.z: {} {}", shown(sources[i].source.name), shown(field.path)));
+      return;
+    }
+}
+
+}  // namespace
+
+Roles find_roles(const std::vector<SurveyedSource>& sources) {
+  Roles roles;
+  WheelSet best;
+  std::size_t of = 0;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (!sources[i].source.unreadable.empty()) {
+      roles.reasons.push_back(
+          fmt::format("{}: {}", shown(sources[i].source.name), shown(sources[i].source.unreadable)));
+      continue;
+    }
+    WheelSet set = wheels_of(sources[i].source, i);
+    if (set.rank >= best.rank) continue;
+    best = std::move(set);
+    of = i;
+  }
+  roles.kinematics = best.kinematics;
+  roles.wheels = best.wheels;
+  roles.steering = best.steering;
+  roles.by_place = best.by_place;
+  const auto say = [&](const Role& role, const char* what) {
+    roles.reasons.push_back(fmt::format("{}{}{}: {} {}, {}", what, role.which.empty() ? "" : ".", role.which,
+                                        shown(sources[of].source.name), shown(role.field),
+                                        role.unit.empty() ? "unit unknown: null" : role.unit));
+  };
+  for (const Role& role : roles.wheels) say(role, "wheel");
+  for (const Role& role : roles.steering) say(role, "steering");
+  roles.reasons.push_back(roles.wheels.empty() ? "no wheels found: null"
+                          : roles.kinematics.empty()
+                              ? "robot: the wheels fit several classes or none: null"
+                              : fmt::format("robot: {}, as its wheels say", roles.kinematics));
+  find_reference(sources, roles);
+  find_gyro(sources, roles);
+  return roles;
+}
+
+}  // namespace odobench::log_import
