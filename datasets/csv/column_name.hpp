@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace odobench::csv_import {
+namespace odobench {
 
 enum class Meaning { Unknown, Time, X, Y, Heading, Wheel, Steering };
 
@@ -19,4 +19,4 @@ struct ColumnName {
 // "left_rad_s", "wheel_speed.right [rpm]", "Time (ms)", "gt_x", "steer_1_deg".
 ColumnName column_name(std::string_view name);
 
-}  // namespace odobench::csv_import
+}  // namespace odobench
