@@ -18,6 +18,7 @@
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
 #include "bench/options/written_files.hpp"
+#include "bench/studies/importing/log_proposal.hpp"
 #include "bench/studies/importing/log_study.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
 
@@ -167,12 +168,22 @@ ExitCode show(const ImportOptions& options) {
   return ExitCode::Success;
 }
 
+ExitCode propose_for_logs(const ImportOptions& options) {
+  const LogProposal proposal = propose_log_map({options.what.begin(), options.what.end()},
+                                               log_options(options), InterruptGuard::stop());
+  if (!options.quiet)
+    for (const std::string& reason : proposal.reasons) note(reason);
+  print_text(safe_json(proposal.map));
+  return ExitCode::Success;
+}
+
 ExitCode import_of_logs(const ImportOptions& options, const Catalogue& catalogue) {
   if (!options.from.empty())
     throw std::invalid_argument("--from is of " + names_of(catalogue.importers(), ", "));
   if (options.drop_lost || !options.exclude.empty())
     throw std::invalid_argument("--drop-lost and --exclude are not for logs");
   if (options.show) return show(options);
+  if (options.propose) return propose_for_logs(options);
   if (options.map.empty())
     throw std::invalid_argument(
         "logs need --map=MAP.JSON, which says what robot it is and what their fields are; "

@@ -8,12 +8,6 @@
 namespace odobench {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 // Takes a quoted field off `rest`, which begins with a quote; false where it is not closed.
 bool take_quoted(std::string_view& rest, std::string_view& field, std::deque<std::string>& unescaped) {
   std::size_t end = 1;
@@ -53,6 +47,12 @@ void skip_blanks(std::string_view& rest, char separator) {
 
 }  // namespace
 
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
 std::string CsvDialect::text() const {
   if (separator == '\t') return "separated by tabs";
   if (separator == ' ') return "separated by blanks";
@@ -63,7 +63,7 @@ char find_separator(std::string_view header, char usual) {
   constexpr std::string_view candidates = ";\t,";
   std::size_t counts[3] = {}, blanks = 0;
   bool quoted = false;
-  for (const char c : trimmed(header)) {
+  for (const char c : without_blanks(header)) {
     if (c == '"') quoted = !quoted;
     if (quoted) continue;
     const std::size_t at = candidates.find(c);
@@ -86,10 +86,20 @@ bool separator_line(std::string_view line, char& separator) {
 }
 
 bool comment_line(std::string_view line, std::string_view& content) {
-  line = trimmed(line);
+  line = without_blanks(line);
   if (line.empty() || (line.front() != '#' && line.front() != '%')) return false;
-  content = trimmed(line.substr(std::min(line.find_first_not_of("#%"), line.size())));
+  content = without_blanks(line.substr(std::min(line.find_first_not_of("#%"), line.size())));
   return true;
+}
+
+std::string encoding_fault(std::string_view line) {
+  const std::string_view mark = line.substr(0, 2);
+  if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
+    return "found text in UTF-16, expected UTF-8 (spreadsheets: save as \"CSV UTF-8\")";
+  if (line.find('\0') != std::string_view::npos) return "found a byte of zero, expected a text";
+  if (line.find('\r') != std::string_view::npos)
+    return "found a carriage return inside the line, expected line breaks (LF or CRLF)";
+  return "";
 }
 
 bool looks_like_number(std::string_view field) {
@@ -102,17 +112,17 @@ bool split_fields(std::string_view line, char separator, std::vector<std::string
                   std::deque<std::string>& unescaped) {
   fields.clear();
   unescaped.clear();
-  if (separator == ' ') line = trimmed(line);
+  if (separator == ' ') line = without_blanks(line);
   for (;;) {
     std::string_view rest = line, field;
     skip_blanks(rest, separator);
     if (!rest.empty() && rest.front() == '"') {
       if (!take_quoted(rest, field, unescaped)) return false;
       const std::size_t end = next_separator(rest, separator);
-      if (!trimmed(rest.substr(0, end)).empty()) return false;  // text behind the closing quote
+      if (!without_blanks(rest.substr(0, end)).empty()) return false;  // text behind the closing quote
       line = rest;
     } else {
-      field = trimmed(rest.substr(0, next_separator(rest, separator)));
+      field = without_blanks(rest.substr(0, next_separator(rest, separator)));
       line = rest;
     }
     fields.push_back(field);

@@ -17,6 +17,9 @@ struct CsvDialect {
   std::string text() const;
 };
 
+// Without blanks and tabs around.
+std::string_view without_blanks(std::string_view text);
+
 // The separator that divides this header line most often outside quotes: ; or tab or comma, else blanks, else
 // `usual`.
 char find_separator(std::string_view header, char usual);
@@ -26,6 +29,10 @@ bool separator_line(std::string_view line, char& separator);
 
 // "# ..." or "% ...": what stands behind the mark.
 bool comment_line(std::string_view line, std::string_view& content);
+
+// Why this line cannot be read as a text of UTF-8 or Latin-1: UTF-16, bytes of zero, Macintosh line breaks.
+// "found ..., expected ..."; "" where it can.
+std::string encoding_fault(std::string_view line);
 
 // A decimal number, with point or comma.
 bool looks_like_number(std::string_view field);

@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include "base/range.hpp"
 #include "base/text.hpp"
+#include "datasets/csv/decimal_number.hpp"
 
 namespace odobench {
 namespace {
@@ -45,12 +45,8 @@ std::string CsvRow::reading() const {
 }
 
 void CsvRow::refuse_encoding(std::string_view line) {
-  const std::string_view mark = line.substr(0, 2);
-  if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
-    fail("found text in UTF-16, expected UTF-8 (spreadsheets: save as \"CSV UTF-8\")");
-  if (line.find('\0') != std::string_view::npos) fail("found a byte of zero, expected a text");
-  if (line.find('\r') != std::string_view::npos)
-    fail("found a carriage return inside the line, expected line breaks (LF or CRLF)");
+  const std::string fault = encoding_fault(line);
+  if (!fault.empty()) fail(fault);
 }
 
 bool CsvRow::take_header() {
@@ -146,24 +142,15 @@ double CsvRow::number(std::size_t column) const {
 }
 
 double CsvRow::number(std::string_view text, std::size_t column) const {
-  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';  // from_chars takes no plus sign
-  const std::string_view digits = plus ? text.substr(1) : text;
-  double value = 0;
-  char point[64];
-  const char* first = digits.data();
-  const auto comma = dialect_.separator == ',' ? std::string_view::npos : digits.find(',');
-  if (comma != std::string_view::npos && digits.size() <= sizeof point &&
-      digits.find('.') == std::string_view::npos) {
-    std::copy(digits.begin(), digits.end(), point);
-    point[comma] = '.';
-    first = point;
-  }
-  const bool has_point = comma == std::string_view::npos && digits.find('.') != std::string_view::npos;
-  const Decimal now = first == point ? Decimal::Comma : has_point ? Decimal::Point : Decimal::Unknown;
-  const auto [end, error] = std::from_chars(first, first + digits.size(), value);
-  if (error != std::errc() || end != first + digits.size() || !std::isfinite(value))
+  const bool comma = dialect_.separator != ',' && text.find(',') != std::string_view::npos &&
+                     text.find('.') == std::string_view::npos;
+  const bool has_point = !comma && text.find('.') != std::string_view::npos;
+  const Decimal now = comma ? Decimal::Comma : has_point ? Decimal::Point : Decimal::Unknown;
+  const std::optional<double> number = decimal_number(text, comma ? ',' : '.');
+  if (!number || !std::isfinite(*number))
     fail(fmt::format("found {} in column {}, expected a finite number", in_quotes(text),
                      in_quotes(names_[column])));
+  const double value = *number;
   if (!in_range(value))
     fail(fmt::format("found {} in column {}, expected a number of at most {:g} in size", in_quotes(text),
                      in_quotes(names_[column]), kLargestNumber));

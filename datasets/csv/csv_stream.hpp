@@ -4,10 +4,9 @@
 
 #include <atomic>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "datasets/csv/csv_row.hpp"
+#include "datasets/csv/text_lines.hpp"
 
 namespace odobench {
 
@@ -16,34 +15,23 @@ namespace odobench {
 // break must have all fields.
 class CsvStream : public CsvRow {
  public:
-  // Longest line accepted [bytes]: what has no line break at all must not fill the memory.
-  static constexpr std::size_t kLongestLine = 1 << 20;
-
   // `separator`: where the header has none. Opens the file ("-" is standard input) and reads the header line.
   // Throws DataError when it cannot be read or is empty. Once `interrupt` (may be null) is set, the file ends
   // as soon as the rows already read are used up, also while a pipe delivers nothing (before the header:
   // without columns).
   CsvStream(const std::filesystem::path& file, char separator, const std::atomic<bool>* interrupt = nullptr);
-  ~CsvStream();
-  CsvStream(const CsvStream&) = delete;
-  CsvStream& operator=(const CsvStream&) = delete;
 
   // To the next row; false at the end. The fields of the row before become invalid.
   bool next();
   // next() said false because of `interrupt`: the rows so far are not all.
-  bool interrupted() const { return interrupted_; }
+  bool interrupted() const { return interrupted_ || lines_.interrupted(); }
 
  private:
-  // The next line without its break in `line`; false at the end of the file.
   bool take_line(std::string_view& line) override;
-  bool fill();
-  bool only_blank_lines_left();
 
-  int descriptor_ = -1;
+  TextLines lines_;
   const std::atomic<bool>* interrupt_;
-  std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0;  // what is read and not yet used
-  bool at_end_ = false, interrupted_ = false;
+  bool interrupted_ = false;
 };
 
 }  // namespace odobench

@@ -4,12 +4,17 @@
 
 #include "base/files.hpp"
 #include "datasets/logs/ros/ros_logs.hpp"
+#include "datasets/logs/tables/table_logs.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
 
 const std::vector<LogFormat>& log_formats() {
-  static const std::vector<LogFormat> all = ros_log_formats();
+  static const std::vector<LogFormat> all = [] {
+    std::vector<LogFormat> list = ros_log_formats();
+    list.insert(list.end(), table_log_formats().begin(), table_log_formats().end());
+    return list;
+  }();
   return all;
 }
 

@@ -70,6 +70,7 @@ struct LogOptions {
   // How tables are written where looking at them does not tell.
   std::string separator, decimal, comment, encoding;
   std::optional<int> header_rows;
+  std::string plane;  // of the ground in a trajectory: "xy", "zx" (y up), "xz" (camera axes); "": looked at
 };
 
 // Refusals are DataError: "FILE: byte N: found ..., expected ...", in tables "FILE:LINE: ...". Memory stays

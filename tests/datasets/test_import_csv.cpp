@@ -7,11 +7,11 @@
 
 #include "base/files.hpp"
 #include "base/sha256.hpp"
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 #include "datasets/import/csv/csv_files.hpp"
 #include "datasets/import/csv/csv_import.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
-#include "datasets/import/csv/decimal_time.hpp"
+#include "datasets/csv/decimal_time.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 
@@ -133,7 +133,7 @@ TEST(ImportCsv, SteeringIsAnAngle) {
 
 // 1760000000.123456789 s in a double is off by up to 120 ns, 2^53 ns are 104 days.
 TEST(ImportCsv, StampsKeepTheirDigits) {
-  using csv_import::decimal_nanoseconds;
+  using odobench::decimal_nanoseconds;
   EXPECT_EQ(decimal_nanoseconds("1760000000.123456789", 9), 1760000000123456789);
   EXPECT_EQ(decimal_nanoseconds("1760000000123456789", 0), 1760000000123456789);
   EXPECT_EQ(decimal_nanoseconds("1.760000000123456789E+09", 9), 1760000000123456789);
@@ -335,11 +335,11 @@ TEST(ImportCsv, RefusesWithThePlace) {
 }
 
 TEST(ImportCsv, NamesOfColumnsSayMeaningAndUnit) {
-  using csv_import::column_name;
-  using csv_import::Meaning;
+  using odobench::column_name;
+  using odobench::Meaning;
   const auto is = [](const char* name, Meaning meaning, const std::string& unit,
                      const std::string& which = "") {
-    const csv_import::ColumnName column = column_name(name);
+    const ColumnName column = column_name(name);
     EXPECT_EQ(column.meaning, meaning) << name;
     EXPECT_EQ(column.unit, unit) << name;
     EXPECT_EQ(column.which, which) << name;

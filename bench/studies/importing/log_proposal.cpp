@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "bench/studies/importing/clock_offset.hpp"
 #include "bench/studies/importing/wheel_evidence.hpp"
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 #include "datasets/import/logs/log_import.hpp"
 #include "datasets/import/logs/log_roles.hpp"
 #include "datasets/robots/layouts.hpp"

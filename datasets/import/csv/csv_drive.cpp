@@ -12,7 +12,7 @@
 #include "base/range.hpp"
 #include "base/text.hpp"
 #include "datasets/csv/csv_table.hpp"
-#include "datasets/import/csv/decimal_time.hpp"
+#include "datasets/csv/decimal_time.hpp"
 #include "datasets/native/columns.hpp"
 
 namespace odobench::csv_import {

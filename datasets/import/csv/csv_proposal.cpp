@@ -13,10 +13,10 @@
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "datasets/csv/csv_table.hpp"
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 #include "datasets/import/csv/csv_files.hpp"
 #include "datasets/import/csv/csv_map.hpp"
-#include "datasets/import/csv/decimal_time.hpp"
+#include "datasets/csv/decimal_time.hpp"
 #include "datasets/robots/layouts.hpp"
 
 namespace odobench {
@@ -195,7 +195,7 @@ CsvProposal propose_csv_map(const std::vector<std::string>& items) {
   const std::vector<std::filesystem::path> files = csv_import::csv_files(items);
   csv_import::Sample first = csv_import::look_at(files.front(), nullptr);
   std::vector<std::string> names;
-  for (const csv_import::ColumnName& column : first.columns) {
+  for (const ColumnName& column : first.columns) {
     if (!is_valid_utf8(column.name))
       throw DataError(fmt::format("{}: found the column \"{}\", expected names in UTF-8",
                                   shown_path(files.front()), shown(column.name)));

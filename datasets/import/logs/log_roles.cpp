@@ -9,14 +9,11 @@
 #include <optional>
 
 #include "base/text.hpp"
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 #include "datasets/import/logs/reference_roles.hpp"
 
 namespace odobench::log_import {
 namespace {
-
-using csv_import::ColumnName;
-using csv_import::Meaning;
 
 struct WheelSet {
   std::vector<Role> wheels, steering;
@@ -55,7 +52,7 @@ void finish(WheelSet& set) {
   std::vector<std::string> driven, steered;
   for (const Role& role : set.wheels) driven.push_back(role.which);
   for (const Role& role : set.steering) steered.push_back(role.which);
-  set.kinematics = csv_import::class_of_wheels(driven, steered);
+  set.kinematics = class_of_wheels(driven, steered);
   set.rank = rank_of(set);
 }
 
@@ -71,7 +68,7 @@ WheelSet joints(const LogSource& source, std::size_t number, const std::string& 
   for (const LogField& field : source.fields) {
     const std::optional<std::string> joint = joint_of(field.path, array);
     if (!joint) continue;
-    const ColumnName name = csv_import::column_name(*joint);
+    const ColumnName name = column_name(*joint);
     const bool steers = name.meaning == Meaning::Steering;
     if (!steers && name.meaning != Meaning::Wheel) continue;
     if (steers && array != "position") continue;
@@ -87,7 +84,7 @@ WheelSet named(const LogSource& source, std::size_t number) {
   WheelSet set;
   for (const LogField& field : source.fields) {
     if (!numeric(field) || field.path.find("header.") == 0) continue;
-    const ColumnName name = csv_import::column_name(field.path);
+    const ColumnName name = column_name(field.path);
     const bool steers = name.meaning == Meaning::Steering;
     if (!steers && (name.meaning != Meaning::Wheel || name.odometry)) continue;
     const bool fits = name.unit != "s" && name.unit != "ms" && name.unit != "us" && name.unit != "ns";
@@ -125,7 +122,7 @@ WheelSet pair_by_place(const LogSource& source, std::size_t number) {
   if (pair.empty() && source.fields.size() == 3 && source.fields[1].path == "#2")
     pair = {&source.fields[1], &source.fields[2]};
   if (pair.empty()) return set;
-  const ColumnName name = csv_import::column_name(base);
+  const ColumnName name = column_name(base);
   std::string unit = name.unit;
   if (unit.empty() && whole_numbers(*pair[0]) && whole_numbers(*pair[1])) unit = "count";
   if (unit.empty()) unit = base.find("vel") != std::string::npos ? "rad/s" : "rad";
@@ -151,7 +148,7 @@ void find_gyro(const std::vector<SurveyedSource>& sources, Roles& roles) {
   for (std::size_t i = 0; i < sources.size(); ++i)
     for (const LogField& field : sources[i].source.fields) {
       const bool imu = sources[i].source.type.ends_with("/Imu") && field.path == "angular_velocity.z";
-      const ColumnName name = csv_import::column_name(field.path);
+      const ColumnName name = column_name(field.path);
       const bool by_name = numeric(field) && field.path.find("gyro") != std::string::npos &&
                            (field.path.find('z') != std::string::npos);
       if (!imu && !by_name) continue;

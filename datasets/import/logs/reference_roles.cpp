@@ -8,13 +8,10 @@
 #include <optional>
 
 #include "base/text.hpp"
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 
 namespace odobench::log_import {
 namespace {
-
-using csv_import::ColumnName;
-using csv_import::Meaning;
 
 struct Pose {
   std::vector<Role> roles;
@@ -84,7 +81,7 @@ Pose named_pose(const LogSource& source, std::size_t i) {
   for (const LogField& field : source.fields) {
     if (field.type == "quaternion") quaternion = field.path;
     if (field.type == "string" || field.type == "text" || field.type == "time") continue;
-    const ColumnName name = csv_import::column_name(field.path);
+    const ColumnName name = column_name(field.path);
     const int part = name.meaning == Meaning::X         ? 0
                      : name.meaning == Meaning::Y       ? 1
                      : name.meaning == Meaning::Heading ? 2

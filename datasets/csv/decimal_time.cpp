@@ -1,9 +1,9 @@
-#include "datasets/import/csv/decimal_time.hpp"
+#include "datasets/csv/decimal_time.hpp"
 
 #include <charconv>
 #include <string>
 
-namespace odobench::csv_import {
+namespace odobench {
 namespace {
 
 constexpr int kLargestExponent = 40;
@@ -37,9 +37,39 @@ std::optional<int> take_exponent(std::string_view text) {
   return minus ? -exponent : exponent;
 }
 
+// "1760000000.123456789" as nearly all stamps are written: at most 19 digits, no exponent, nothing to round.
+// Nothing where the text is something else, or no number at all.
+std::optional<std::int64_t> usual_nanoseconds(std::string_view text, int digits) {
+  constexpr std::int64_t powers[] = {1,       10,        100,        1'000,       10'000,
+                                     100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+  const bool minus = take_sign(text);
+  if (text.empty() || text.size() > 20) return std::nullopt;
+  std::uint64_t value = 0;
+  std::size_t count = 0, behind = 0;
+  bool point = false;
+  for (const char c : text) {
+    const auto digit = static_cast<unsigned>(c - '0');
+    if (digit > 9) {
+      if (point || (c != '.' && c != ',')) return std::nullopt;
+      point = true;
+      continue;
+    }
+    value = 10 * value + digit;
+    ++count;
+    behind += point ? 1 : 0;
+  }
+  const auto shift = static_cast<std::size_t>(digits) - behind;
+  if (count == 0 || count > 19 || behind > static_cast<std::size_t>(digits) || shift > 9 ||
+      value > static_cast<std::uint64_t>(kLargestStamp_ns / powers[shift]))
+    return std::nullopt;
+  const auto stamp = static_cast<std::int64_t>(value) * powers[shift];
+  return minus ? -stamp : stamp;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> decimal_nanoseconds(std::string_view text, int digits) {
+  if (const std::optional<std::int64_t> usual = usual_nanoseconds(text, digits)) return usual;
   if (text.size() > kLongestNumber) return std::nullopt;
   const bool minus = take_sign(text);
   std::string number(take_digits(text));
@@ -70,4 +100,4 @@ std::optional<std::int64_t> decimal_nanoseconds(std::string_view text, int digit
   return minus ? -value : value;
 }
 
-}  // namespace odobench::csv_import
+}  // namespace odobench

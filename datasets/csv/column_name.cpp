@@ -1,4 +1,4 @@
-#include "datasets/import/csv/column_name.hpp"
+#include "datasets/csv/column_name.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,16 +6,26 @@
 #include <utility>
 #include <vector>
 
-namespace odobench::csv_import {
+namespace odobench {
 namespace {
 
 using Words = std::vector<std::string>;
+
+// The micro sign or the Greek letter, both of two bytes in UTF-8.
+bool is_micro(std::string_view text) {
+  return text.substr(0, 2) == "\xC2\xB5" || text.substr(0, 2) == "\xCE\xBC";
+}
 
 // Letters, digits and what else a unit has, in lower case; words end where letters meet digits, too.
 Words words_of(std::string_view text) {
   Words words;
   bool new_word = true, digit = false;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (is_micro(text.substr(i))) {
+      c = 'u';
+      ++i;
+    }
     const auto u = static_cast<unsigned char>(c);
     if (u >= 0x80 || std::isalnum(u) == 0) {
       new_word = true;
@@ -64,7 +74,12 @@ std::string take_unit(Words& words) {
                                                                    {{"secs"}, "s"},
                                                                    {{"seconds"}, "s"},
                                                                    {{"ms"}, "ms"},
+                                                                   {{"msec"}, "ms"},
+                                                                   {{"millis"}, "ms"},
                                                                    {{"us"}, "us"},
+                                                                   {{"usec"}, "us"},
+                                                                   {{"micros"}, "us"},
+                                                                   {{"nanosec"}, "ns"},
                                                                    {{"ns"}, "ns"},
                                                                    {{"nsec"}, "ns"},
                                                                    {{"count"}, "count"},
@@ -94,7 +109,7 @@ std::string which_of(const Words& words) {
 
 Meaning meaning_of(const Words& words) {
   const std::string last = words.empty() ? "" : words.back();
-  if (has(words, {"time", "stamp", "timestamp", "t"})) return Meaning::Time;
+  if (has(words, {"time", "stamp", "timestamp", "t", "ts", "zeit", "temps", "tiempo"})) return Meaning::Time;
   if (has(words, {"steer", "steering"})) return Meaning::Steering;
   if (has(words, {"theta", "yaw", "heading", "psi"})) return Meaning::Heading;
   if (last == "x" || last == "px") return Meaning::X;
@@ -135,4 +150,4 @@ std::string class_of_wheels(std::vector<std::string> driven, const std::vector<s
   return driven == std::vector<std::string>{"1", "2", "3"} && steered.empty() ? "omni3" : "";
 }
 
-}  // namespace odobench::csv_import
+}  // namespace odobench

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace odobench::csv_import {
+namespace odobench {
 
 enum class Meaning { Unknown, Time, X, Y, Heading, Wheel, Steering };
 
@@ -23,4 +23,4 @@ ColumnName column_name(std::string_view name);
 // The class of robots whose wheels are called so; "" where they fit several or none.
 std::string class_of_wheels(std::vector<std::string> driven, const std::vector<std::string>& steered);
 
-}  // namespace odobench::csv_import
+}  // namespace odobench

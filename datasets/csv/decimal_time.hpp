@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace odobench::csv_import {
+namespace odobench {
 
 // Stamps are at most this far from zero (126 years), so that differences of two fit.
 inline constexpr std::int64_t kLargestStamp_ns = 4'000'000'000'000'000'000;
@@ -15,4 +15,4 @@ inline constexpr std::int64_t kLargestStamp_ns = 4'000'000'000'000'000'000;
 // Nothing where the text is no decimal number, with point or comma, or beyond kLargestStamp_ns.
 std::optional<std::int64_t> decimal_nanoseconds(std::string_view text, int digits);
 
-}  // namespace odobench::csv_import
+}  // namespace odobench
