@@ -59,6 +59,9 @@ std::string take_unit(Words& words) {
                                                                    {{"rev", "s"}, "turn/s"},
                                                                    {{"rps"}, "turn/s"},
                                                                    {{"rpm"}, "rpm"},
+                                                                   {{"1", "min"}, "rpm"},
+                                                                   {{"u", "min"}, "rpm"},
+                                                                   {{"grad"}, "deg"},
                                                                    {{"m", "s"}, "m/s"},
                                                                    {{"rad"}, "rad"},
                                                                    {{"deg"}, "deg"},
@@ -94,6 +97,13 @@ std::string take_unit(Words& words) {
   return "";
 }
 
+// A degree sign in UTF-8 or Latin-1 is a unit, too.
+std::string degree_sign(std::string_view name) {
+  const std::size_t at = name.find('\xb0');
+  if (at == std::string_view::npos) return "";
+  return name.substr(at + 1).starts_with("/s") ? "deg/s" : "deg";
+}
+
 std::string number_of(const Words& words) {
   for (const std::string& word : words)
     if (word.size() == 1 && word[0] >= '1' && word[0] <= '9') return word;
@@ -109,9 +119,10 @@ std::string which_of(const Words& words) {
 
 Meaning meaning_of(const Words& words) {
   const std::string last = words.empty() ? "" : words.back();
-  if (has(words, {"time", "stamp", "timestamp", "t", "ts", "zeit", "temps", "tiempo"})) return Meaning::Time;
+  if (has(words, {"time", "stamp", "timestamp", "t", "zeit", "ts", "zeit", "temps", "tiempo"}))
+    return Meaning::Time;
   if (has(words, {"steer", "steering"})) return Meaning::Steering;
-  if (has(words, {"theta", "yaw", "heading", "psi"})) return Meaning::Heading;
+  if (has(words, {"theta", "yaw", "heading", "psi", "gier", "gierwinkel"})) return Meaning::Heading;
   if (last == "x" || last == "px") return Meaning::X;
   if (last == "y" || last == "py") return Meaning::Y;
   const bool wheel = has(words, {"wheel", "w", "enc", "encoder", "traction", "drive", "motor", "omega"});
@@ -125,7 +136,8 @@ ColumnName column_name(std::string_view name) {
   ColumnName column;
   column.name = name;
   Words words = words_of(name);
-  column.unit = take_unit(words);
+  column.unit = degree_sign(name);
+  if (column.unit.empty()) column.unit = take_unit(words);
   if (words.empty() &&
       (column.unit == "s" || column.unit == "ms" || column.unit == "us" || column.unit == "ns"))
     column.meaning = Meaning::Time;

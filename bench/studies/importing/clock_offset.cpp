@@ -84,6 +84,23 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b, l
   return spread > 0 ? (ab - sa * sb / n) / std::sqrt(spread) : -1;
 }
 
+// Every tenth of the rates.
+std::vector<double> thinned(const std::vector<double>& rates) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < rates.size(); k += kSteps) out.push_back(rates[k]);
+  return out;
+}
+
+// The lag in grid steps about which to search where the clocks share no time: the best of all, coarsely.
+long lag_of_all(const std::vector<double>& a, const std::vector<double>& b, long least) {
+  const std::vector<double> p = thinned(a), q = thinned(b);
+  long best = 0;
+  double highest = -2;
+  for (long lag = -static_cast<long>(q.size()); lag < static_cast<long>(p.size()); ++lag)
+    if (const double c = correlation(p, q, lag, least / kSteps); c > highest) highest = c, best = lag;
+  return best * kSteps;
+}
+
 }  // namespace
 
 std::optional<ClockOffset> clock_offset(const LogMap& map, const LogCurves& curves) {
@@ -93,23 +110,24 @@ std::optional<ClockOffset> clock_offset(const LogMap& map, const LogCurves& curv
     return std::any_of(r.begin(), r.end(), [](double rate) { return rate > kLeastRate; });
   };
   if (!turns(a) || !turns(b)) return std::nullopt;
-  // Index i of b is at time wheels.begin + i kGrid; the same time has index i + zero of a.
-  const double shift = (wheels.begin - reference.begin) / kGrid;
-  const long zero = std::lround(shift);
   const long least =
       std::max<long>(std::lround(kLeastOverlap / kGrid), static_cast<long>(std::min(a.size(), b.size())) / 4);
+  // Index i of b is at time wheels.begin + i kGrid; the same time has index i + shift of a.
+  const double shift = (wheels.begin - reference.begin) / kGrid;
+  const bool apart = shift > static_cast<double>(a.size()) || -shift > static_cast<double>(b.size());
   const long most = std::lround(kLongestLag / kGrid);
+  const long about = apart ? lag_of_all(a, b, least) : std::lround(shift);
   std::vector<double> c;
-  for (long lag = -most; lag <= most; ++lag) c.push_back(correlation(a, b, zero + lag, least));
+  for (long lag = -most; lag <= most; ++lag) c.push_back(correlation(a, b, about + lag, least));
   const auto peak = std::max_element(c.begin(), c.end());
   if (!(*peak > 0) || peak == c.begin() || peak == c.end() - 1) return std::nullopt;
   const double left = peak[-1], right = peak[1], bend = left - 2 * *peak + right;
   const double part = bend < 0 ? (left - right) / (2 * bend) : 0;
   const double lag = static_cast<double>(peak - c.begin() - most) + part;
   ClockOffset found;
-  found.seconds = kGrid * (lag + static_cast<double>(zero) - shift);
+  found.seconds = kGrid * (lag + static_cast<double>(about) - shift);
   found.correlation = *peak;
-  found.at_zero = c[static_cast<std::size_t>(most)];
+  found.at_zero = apart ? 0 : c[static_cast<std::size_t>(most)];
   return found;
 }
 

@@ -83,7 +83,7 @@ WheelSet joints(const LogSource& source, std::size_t number, const std::string& 
 WheelSet named(const LogSource& source, std::size_t number) {
   WheelSet set;
   for (const LogField& field : source.fields) {
-    if (!numeric(field) || field.path.find("header.") == 0) continue;
+    if (!numeric(field) || field.path.starts_with("header.") || field.path.starts_with("#")) continue;
     const ColumnName name = column_name(field.path);
     const bool steers = name.meaning == Meaning::Steering;
     if (!steers && (name.meaning != Meaning::Wheel || name.odometry)) continue;
