@@ -108,12 +108,14 @@ class Aligner {
                       "wheels and reference share; give offset_s",
                       id));
     std::uintmax_t most = 60;
-    const auto [offset, lowest] = boost::math::tools::brent_find_minima(
-        [&](double o) {
+    // Of the difference, since an offset of years has no digits left for microseconds of it.
+    const auto [beside, lowest] = boost::math::tools::brent_find_minima(
+        [&](double d) {
           stop_.check();
-          return fit(shifted(loaded_, log, source, o)).mean_square;
+          return fit(shifted(loaded_, log, source, rough->seconds + d)).mean_square;
         },
-        rough->seconds - kRefine, rough->seconds + kRefine, kRefineBits, most);
+        -kRefine, kRefine, kRefineBits, most);
+    const double offset = rough->seconds + beside;
     out_.report.push_back(
         fmt::format("{}: clock of {} runs {:.5f} s ahead of the wheels: applied (by yaw rates {:.4f} s at "
                     "correlation {:.4f}, "
