@@ -45,8 +45,9 @@ struct Verb {
 };
 
 // In the order of the help. Without a verb the first one is meant.
-constexpr std::array<Verb, 17> kVerbs{{
+constexpr std::array<Verb, 18> kVerbs{{
     {"run", "run solvers on a problem and compare them (the default verb)", add_run},
+    {"calibrate", "from logs of any format to parameters, in one go", add_calibrate},
     {"filter", "the relative-entropy filter over a recorded run", add_filter},
     {"windows", "solve windows of the relative-entropy filter and compare the methods", add_windows},
     {"import", "make a data set of published raw files", add_import},

@@ -16,6 +16,7 @@
 #include "bench/options/written_files.hpp"
 #include "bench/studies/figure_files.hpp"
 #include "bench/studies/records.hpp"
+#include "bench/studies/report_study.hpp"
 #include "reports/kinds/kinds.hpp"
 #include "reports/page/report_document.hpp"
 #include "reports/page/web_assets.hpp"
@@ -45,33 +46,6 @@ void add_options(CLI::App& app, ReportOptions& o) {
 
 namespace fs = std::filesystem;
 
-ReportInput report_input(const ReportOptions& options, const std::vector<RunRecord>& records) {
-  ReportInput input;
-  input.records = records;
-  input.title = options.title;
-  input.notes = notes_of_best(records);
-  for (const std::string& run : options.runs) {
-    const fs::path folder = fs::is_directory(run) ? fs::path(run) : fs::path(run).parent_path();
-    std::optional<TrackSet> tracks = read_tracks(folder);
-    // A .jsonl file may lie beside the tracks of another run.
-    const auto belongs = [&](const RunRecord& r) {
-      return r.problem == tracks->problem && r.dataset == tracks->dataset &&
-             r.dataset_sha256 == tracks->dataset_sha256;
-    };
-    if (tracks && std::any_of(records.begin(), records.end(), belongs))
-      input.tracks.push_back(std::move(*tracks));
-  }
-  input.absent = unknown_records(records);
-  bool drives = false;
-  for (const RunRecord& r : records) drives = drives || !r.errors.empty();
-  if (drives && input.tracks.empty())
-    input.absent.push_back(
-        "The run directory holds no tracks, so there are no figures of the driven paths: they are stored "
-        "when a run with "
-        "--out ends.");
-  return input;
-}
-
 ExitCode report_command(const ReportOptions& options) {
   const Format format = parse_format(options.format);
   TerminalWatcher watcher;
@@ -87,7 +61,7 @@ ExitCode report_command(const ReportOptions& options) {
   refuse_existing("--out", options.out, options.overwrite);
   if (options.out == "-" && format == Format::Json)
     throw std::invalid_argument("--out=-: standard output takes the page, not JSON as well");
-  const Document document = make_report(report_input(options, records));
+  const Document document = make_report(report_input(options.runs, records, options.title));
   std::vector<fs::path> written, drawn;
   // First, since it can still be interrupted.
   if (!options.figures.empty())

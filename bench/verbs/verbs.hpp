@@ -16,6 +16,12 @@ namespace odobench {
 // make no sense (nothing is run or written then), DataError on a bad set.
 VerbAction add_run(CLI::App& app);
 
+// `bench calibrate LOG...`: from logs to parameters in one go.
+//
+// Short tables on standard output; what was assumed on standard error. Throws std::invalid_argument where
+// the log leaves open what may not be assumed, with the options that would say it.
+VerbAction add_calibrate(CLI::App& app);
+
 // `bench filter`: the relative-entropy filter over a whole recorded run, row by row.
 //
 // Throws std::invalid_argument on wrong usage, DataError with file:line on bad data; no file is left then.

@@ -123,11 +123,13 @@ Robot read_class(const JsonNode& node, const std::string& kinematics) {
     for (const JsonNode& p : node.at("parameters").elements()) {
       if (p.has("equals")) {
         p.allow_only({"name", "equals"});
-        ties.emplace_back(p.at("name").text(), p.at("equals").text());
+        ties.emplace_back(robots::own_name(kinematics, p.at("name").text()),
+                          robots::own_name(kinematics, p.at("equals").text()));
         continue;
       }
       p.allow_only({"name", "unit", "nominal", "lower", "upper"});
       parameters.push_back(read_parameter(p, 2));
+      parameters.back().name = robots::own_name(kinematics, parameters.back().name);
       if (p.has("lower")) continue;
       RobotParameter& last = parameters.back();
       // The unit is that of the class where the set leaves it out.

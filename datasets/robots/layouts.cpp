@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -347,13 +348,33 @@ const std::vector<Layout>& layouts() {
   return list;
 }
 
-const Layout& layout(std::string_view name) {
+const Layout& layout(std::string_view typed) {
+  const std::string_view name = typed == "diff" ? "differential" : typed;
   std::vector<std::string> known;
   for (const Layout& l : layouts()) {
     if (l.name == name) return l;
     known.push_back(l.name);
   }
   throw std::invalid_argument(fmt::format("unknown class of robots '{}'{}", name, did_you_mean(name, known)));
+}
+
+std::string own_name(std::string_view kinematics, std::string_view parameter) {
+  struct Alias {
+    std::string_view kinematics, theirs, ours;
+  };
+  static constexpr std::array<Alias, 9> aliases = {{{"differential", "wheel_separation", "b"},
+                                                    {"differential", "track", "b"},
+                                                    {"differential", "left_wheel_radius", "r_left"},
+                                                    {"differential", "right_wheel_radius", "r_right"},
+                                                    {"skid_steer", "left_wheel_radius", "r_left"},
+                                                    {"skid_steer", "right_wheel_radius", "r_right"},
+                                                    {"tricycle", "wheel_radius", "r"},
+                                                    {"bicycle", "wheel_radius", "r"},
+                                                    {"ackermann", "traction_track_width", "b"}}};
+  const std::string_view name = kinematics == "diff" ? "differential" : kinematics;
+  for (const Alias& alias : aliases)
+    if (alias.kinematics == name && alias.theirs == parameter) return std::string(alias.ours);
+  return std::string(parameter);
 }
 
 std::vector<Dimension> dimensions(const Layout& layout) {

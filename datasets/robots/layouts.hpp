@@ -37,8 +37,11 @@ struct Layout {
 
 // In the order of the documentation.
 const std::vector<Layout>& layouts();
-// Throws std::invalid_argument for an unknown name, with the nearest one.
+// "diff" is short for "differential". Throws std::invalid_argument for an unknown name, with the nearest one.
 const Layout& layout(std::string_view name);
+// A class' own name of a parameter that controllers call otherwise: "b" for "wheel_separation" of two driven
+// wheels, "r" for "wheel_radius" of a tricycle. Other names come back as they are.
+std::string own_name(std::string_view kinematics, std::string_view parameter);
 
 // The dimensions that a layout knows, with their defaults (for the default number of modules).
 std::vector<Dimension> dimensions(const Layout& layout);

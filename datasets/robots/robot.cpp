@@ -65,7 +65,7 @@ Robot robot_of_class(const std::string& kinematics, const std::vector<RobotParam
   robots::Dimensions given = dimensions;
   if (kinematics.rfind("swerve", 0) == 0) count_modules(parameters, given);
   Robot robot;
-  robot.name = robot.kinematics = kinematics;
+  robot.name = robot.kinematics = layout.name;
   robot.rule = layout.rule;
   robot.table = robots::make_robot(layout, given);
   robot.dimensions = dimensions;

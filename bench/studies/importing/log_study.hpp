@@ -15,7 +15,8 @@ namespace odobench {
 
 struct LogStudy {
   std::vector<std::filesystem::path> logs;
-  std::filesystem::path map;
+  std::string map;                 // its text
+  std::filesystem::path map_file;  // for messages and the set's provenance
   LogOptions options;
 };
 

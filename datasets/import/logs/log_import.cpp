@@ -85,12 +85,11 @@ class DatasetMaker {
 
 }  // namespace
 
-LoadedLogs load_logs(const fs::path& map, const std::vector<fs::path>& logs, const LogOptions& options,
-                     const Stop& stop) {
+LoadedLogs load_logs(const std::string& map_text, const fs::path& map_file, const std::vector<fs::path>& logs,
+                     const LogOptions& options, const Stop& stop) {
   LoadedLogs loaded;
-  const std::string text = read_file(map);
-  loaded.map = parse_log_map(text, map.string());
-  loaded.map_sha256 = sha256(text);
+  loaded.map = parse_log_map(map_text, map_file.string());
+  loaded.map_sha256 = sha256(map_text);
   for (const LogGroup& group : group_logs(loaded.map, logs)) {
     stop.check();
     loaded.logs.push_back(read_curves(loaded.map, group, options, stop));

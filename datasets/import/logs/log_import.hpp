@@ -22,9 +22,11 @@ struct LoadedLogs {
   std::vector<SourceFile> files;  // with their sums; of a folder those in it
 };
 
-// Reads map and logs. Throws DataError, std::invalid_argument for logs that fit no source, Interruption.
-LoadedLogs load_logs(const std::filesystem::path& map, const std::vector<std::filesystem::path>& logs,
-                     const LogOptions& options, const Stop& stop);
+// Reads logs by a map, whose text is that of `map_file`. Throws DataError, std::invalid_argument for logs
+// that fit no source, Interruption.
+LoadedLogs load_logs(const std::string& map_text, const std::filesystem::path& map_file,
+                     const std::vector<std::filesystem::path>& logs, const LogOptions& options,
+                     const Stop& stop);
 
 // What was found out about the logs and not said by the map.
 struct Adjustment {

@@ -160,7 +160,10 @@ SourceRows rows_of(const LogTable& table, const LogRequest& request, const Mappe
     if (count > 0)
       notes.push_back(
           fmt::format("{}: {} rows of {} {}", file.filename().string(), count, source.name, what));
-  for (const std::string& text : table.notes) notes.push_back(file.filename().string() + ": " + text);
+  for (const std::string& text : table.notes)
+    if (const std::string line = file.filename().string() + ": " + text;
+        std::find(notes.begin(), notes.end(), line) == notes.end())
+      notes.push_back(line);
   rows.time_ns.reserve(order.rows.size());
   for (const std::size_t k : order.rows) rows.time_ns.push_back(table.time_ns[k]);
   for (std::size_t f = 0; f < request.fields.size(); ++f) {

@@ -1,0 +1,90 @@
+#include "bench/studies/importing/calibrate_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/files.hpp"
+#include "base/json_node.hpp"
+#include "bench/studies/calibration/solver_study.hpp"
+#include "bench/studies/importing/log_proposal.hpp"
+#include "bench/studies/importing/log_study.hpp"
+#include "bench/studies/records.hpp"
+#include "bench/studies/report_study.hpp"
+#include "bench/studies/run_folder.hpp"
+#include "datasets/native/dataset_format.hpp"
+#include "reports/figures/document.hpp"
+#include "reports/kinds/calibration/calibration_tables.hpp"
+#include "reports/page/report_document.hpp"
+
+namespace odobench {
+namespace {
+namespace fs = std::filesystem;
+
+bool is_set(const fs::path& log) {
+  if (fs::is_directory(log) || log.extension() != ".json") return false;
+  const JsonNode root = JsonNode::read(log);
+  return root.is_object() && root.text_or_empty("schema") == kDatasetSchema;
+}
+
+// The map that the logs are read by, as text.
+std::string find_map(const CalibrateStudy& study, Watcher& watcher, const Stop& stop) {
+  if (!study.map.empty()) return read_file(study.map);
+  const LogProposal proposal = propose_log_map(study.logs, study.options, stop);
+  for (const std::string& reason : proposal.reasons) watcher.note(reason);
+  if (!proposal.complete)
+    throw std::invalid_argument(
+        "no map could be made of these logs alone (see above): `bench import LOG... --propose > map.json` "
+        "begins one, --map=map.json takes it");
+  return fill_map(proposal.map, study.answers);
+}
+
+SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalogue& catalogue,
+                  Watcher& watcher, const Stop& stop) {
+  RunFolder folder(study.out / "results", study.overwrite);
+  folder.require_free();
+  SolverStudy solver;
+  solver.solvers = {"lm"};
+  solver.data = set.string();
+  SolverRuns runs = run_solvers(solver, catalogue, folder, watcher, stop);
+  folder.save(comparison_tables(runs.records, notes_of_best(runs.records)));
+  return runs;
+}
+
+}  // namespace
+
+Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogue, Watcher& watcher,
+                          const Stop& stop) {
+  const Existing existing = study.overwrite ? Existing::Replace : Existing::Refuse;
+  Calibrated out;
+  fs::path set = study.out / "set.json";
+  if (study.logs.size() == 1 && is_set(study.logs.front())) {
+    set = study.logs.front();
+  } else {
+    for (const char* name : {"map.json", "set.json", "report.html"})
+      require_writable(study.out / name, existing, "--out");
+    const std::string map = find_map(study, watcher, stop);
+    ImportedLogs imported =
+        import_logs({study.logs, map, study.out / "map.json", study.options}, watcher, stop);
+    for (const std::string& line : imported.report) watcher.note(line);
+    for (const std::string& line : imported.dataset.notes) watcher.note(line);
+    watcher.results_begin();
+    FileTransaction files(existing);
+    files.add(study.out / "map.json", map);
+    add_dataset(imported.dataset, set, files, false, stop);
+    files.commit();
+    out.files = {study.out / "map.json", set};
+  }
+  SolverRuns runs = run_lm(study, set, catalogue, watcher, stop);
+  out.results = study.out / "results";
+  const fs::path page = study.out / "report.html";
+  write_file(page, render_html(make_report(report_input({out.results.string()}, runs.records, ""))),
+             existing);
+  out.files.push_back(out.results);
+  out.files.push_back(page);
+  out.records = std::move(runs.records);
+  return out;
+}
+
+}  // namespace odobench

@@ -1,0 +1,39 @@
+// From logs to parameters in one go: the study behind `bench calibrate`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/stop.hpp"
+#include "bench/catalogue/catalogue.hpp"
+#include "bench/studies/importing/map_answers.hpp"
+#include "bench/studies/watcher.hpp"
+#include "datasets/dataset.hpp"
+#include "datasets/logs/log_file.hpp"
+#include "reports/records/record.hpp"
+
+namespace odobench {
+
+struct CalibrateStudy {
+  std::vector<std::filesystem::path> logs;  // or one set.json
+  std::filesystem::path map;                // "": proposed
+  MapAnswers answers;                       // to the proposal
+  LogOptions options;
+  std::filesystem::path out;  // folder: map.json, set.json, results/, report.html
+  bool overwrite = false;
+};
+
+struct Calibrated {
+  std::vector<RunRecord> records;            // nominal, lm
+  std::vector<std::filesystem::path> files;  // what was written, for people
+  std::filesystem::path results;             // the run directory
+};
+
+// Proposes a map (unless one is given), imports, calibrates with `lm`, writes. What was assumed goes to the
+// watcher as notes. Throws std::invalid_argument where the log leaves open what may not be assumed (then
+// nothing is written), DataError, Interruption.
+Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogue, Watcher& watcher,
+                          const Stop& stop);
+
+}  // namespace odobench

@@ -1,0 +1,221 @@
+// `bench import LOG... --map`, `--propose`, `bench calibrate LOG...`, as a user sees them: the right robot out
+// of logs of every format, and one clear line for what is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/data/drive_log.hpp"
+#include "tests/support/run_process.hpp"
+#include "tests/support/shared_data.hpp"
+
+namespace odobench::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Args = std::vector<std::string>;
+
+class CliLogs : public ::testing::Test {
+ protected:
+  // Parameters of lm by name.
+  static std::map<std::string, double> calibrated(const std::filesystem::path& results) {
+    std::map<std::string, double> found;
+    for (const std::string& line : lines(content(results / "runs.jsonl"))) {
+      const json record = json::parse(line);
+      if (record.at("kind") != "run") continue;
+      for (const json& p : record.at("parameters")) found[p.at("name")] = p.at("value");
+    }
+    return found;
+  }
+
+  static void expect_robot(const std::map<std::string, double>& found, double b, double left, double right,
+                           double tolerance) {
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_NEAR(found.at("b"), b, tolerance * b);
+    EXPECT_NEAR(found.at("r_left"), left, tolerance * left);
+    EXPECT_NEAR(found.at("r_right"), right, tolerance * right);
+  }
+
+  Args drive(const DriveLog& log, const std::string& number = "") {
+    return {folder_.file("ticks" + number + ".csv", log.wheels()),
+            folder_.file("mocap" + number + ".csv", log.capture())};
+  }
+
+  ProcessResult calibrate(const Args& logs, const Args& options = {"--per-turn=1000"}) {
+    Args words{"calibrate"};
+    words.insert(words.end(), logs.begin(), logs.end());
+    words.insert(words.end(), {"--nominal=b=0.4,r=0.05", "--out=" + out(), "--overwrite"});
+    words.insert(words.end(), options.begin(), options.end());
+    return run_bench(words);
+  }
+  std::string out() const { return (folder_ / "out").string(); }
+
+  // A map for drive(), with this in the place of that.
+  std::string map(const std::string& from = "", const std::string& to = "") {
+    std::string text = R"({"schema": "odobench-import", "schema_version": 1, "name": "mine",
+ "robot": {"name": "mine", "kinematics": "diff", "parameters": [{"name": "b", "nominal": 0.4},
+   {"name": "r_right", "nominal": 0.05}, {"name": "r_left", "nominal": 0.05}]},
+ "sources": {"ticks": {"files": "ticks*.csv"}, "mocap": {"files": "mocap*.csv", "offset_s": 0.137}},
+ "signals": {"wheel_angle.left": {"source": "ticks", "field": "left_ticks", "unit": "count", "per_turn": 1000},
+   "wheel_angle.right": {"source": "ticks", "field": "right_ticks", "unit": "count", "per_turn": 1000},
+   "reference.x": {"source": "mocap", "field": "x [mm]", "unit": "mm"},
+   "reference.y": {"source": "mocap", "field": "y [mm]", "unit": "mm"},
+   "reference.heading": {"source": "mocap", "field": "yaw [deg]", "unit": "deg"}}})";
+    if (const std::size_t at = text.find(from); !from.empty()) text.replace(at, from.size(), to);
+    return folder_.file("map.json", text);
+  }
+
+  ProcessResult import(const Args& logs, const std::string& map, const Args& more = {}) {
+    Args words{"import"};
+    words.insert(words.end(), logs.begin(), logs.end());
+    words.insert(words.end(), {"--map=" + map, "--out=" + (folder_ / "set.json").string(), "--overwrite"});
+    words.insert(words.end(), more.begin(), more.end());
+    return run_bench(words);
+  }
+  json set() const { return json::parse(content(folder_ / "set.json")); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CliLogs, CalibratesCountsAndCaptureOfTwoClocks) {
+  const ProcessResult run = calibrate(drive({}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("clock of the reference runs 0.137 s ahead"));
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+  for (const char* file : {"map.json", "set.json", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+}
+
+TEST_F(CliLogs, ProposesSignsSidesAndWhatIsOpen) {
+  DriveLog log;
+  log.left_sign = -1;
+  Args logs = drive(log);
+  // The names are the wrong way round, too.
+  std::string text = content(logs[0]);
+  text.replace(text.find("left_ticks,right_ticks"), 22, "right_ticks,left_ticks");
+  folder_.file("ticks.csv", text);
+  const ProcessResult run = run_bench({"import", logs[0], logs[1], "--propose"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("exchanged"));
+  const json map = json::parse(run.out);
+  EXPECT_EQ(map["signals"]["wheel_angle.left"]["field"], "right_ticks");
+  EXPECT_EQ(map["signals"]["wheel_angle.left"]["sign"], -1);
+  EXPECT_FALSE(map["signals"]["wheel_angle.right"].contains("sign"));
+  EXPECT_TRUE(map["signals"]["wheel_angle.left"]["per_turn"].is_null());
+  EXPECT_TRUE(map["robot"]["parameters"][0]["nominal"].is_null());
+  const ProcessResult calibration = calibrate(logs);
+  ASSERT_EQ(calibration.exit_code, 0) << calibration.err;
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+}
+
+TEST_F(CliLogs, SaysWhatTheLogDoesNotSay) {
+  const Args logs = drive({});
+  const ProcessResult run = run_bench({"calibrate", logs[0], logs[1], "--out=" + out(), "--quiet"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--nominal=b=...,r_right=...,r_left=..."));
+  EXPECT_THAT(run.err, HasSubstr("--per-turn=N"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  const ProcessResult unknown = calibrate(logs, {"--per-turn=1000", "--nominal=bb=0.4"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--nominal: found 'bb', did you mean 'b'?"));
+}
+
+TEST_F(CliLogs, CountersThatRunOverAndPatternsOfSeveralDrives) {
+  DriveLog log;
+  log.bits = 10;
+  Args logs = drive(log, "_1");
+  const Args second = drive(log, "_2");
+  logs.insert(logs.end(), second.begin(), second.end());
+  const ProcessResult run = import(logs, map(R"("per_turn": 1000},
+   "wheel_angle.right": {"source": "ticks", "field": "right_ticks", "unit": "count", "per_turn": 1000})",
+                                             R"("per_turn": 1000, "wrap": 1024},
+   "wheel_angle.right": {"source": "ticks", "field": "right_ticks", "unit": "count", "per_turn": 1000, "bits": 10})"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(set()["recordings"].size(), 2U);
+  EXPECT_EQ(set()["provenance"]["files"].size(), 5U);
+  ASSERT_EQ(
+      run_bench({"--solver=lm", "--data=" + (folder_ / "set.json").string(), "--out=" + out()}).exit_code, 0);
+  expect_robot(calibrated(folder_ / "out"), 0.412, 0.0504, 0.04985, 1e-3);
+}
+
+TEST_F(CliLogs, GapsAndStandstillSplitDrives) {
+  DriveLog gap;
+  gap.gap_from_s = 5;
+  gap.gap_to_s = 5.6;
+  ASSERT_EQ(import(drive(gap), map()).exit_code, 0);
+  EXPECT_EQ(set()["recordings"].size(), 2U);
+  EXPECT_THAT(set()["notes"].dump(), HasSubstr("reference has a gap of 0.6"));
+  DriveLog stop;
+  stop.stop_s = 6;
+  const std::string by_standing = map("\"signals\"", R"("drives": {"split": "standstill", "standstill_s": 3,
+    "names": ["bend_1", "bend_2"]}, "signals")");
+  ASSERT_EQ(import(drive(stop), by_standing).exit_code, 0);
+  ASSERT_EQ(set()["recordings"].size(), 2U);
+  EXPECT_EQ(set()["recordings"][1]["id"], "bend_2");
+  EXPECT_THAT(set()["notes"].dump(), HasSubstr("of standing left out"));
+}
+
+TEST_F(CliLogs, WhatIsWrongWithAMapIsOneLine) {
+  const Args logs = drive({});
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& expected,
+                           int code = 3) {
+    const ProcessResult run = import(logs, map(from, to));
+    EXPECT_EQ(run.exit_code, code) << to;
+    EXPECT_THAT(run.err, HasSubstr(expected));
+    EXPECT_THAT(lines(run.err).back(), HasSubstr("bench: error: ")) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "set.json"));
+  };
+  refused("\"left_ticks\"", "\"left_tick\"", "/signals/wheel.left/field");
+  refused("\"left_ticks\"", "\"left_tick\"", "did you mean 'left_ticks'");
+  refused("\"source\": \"ticks\"", "\"source\": \"tick\"", "did you mean 'ticks'");
+  refused("\"sources\"", "\"source_s\"", "unknown key");
+  refused("\"per_turn\": 1000", "\"per_turn\": null", "/signals/wheel_angle.left/per_turn");
+  refused("\"wheel_angle.left\"", "\"wheel_angle.middle\"",
+          "a signal \"wheel_angle.middle\" that the robot has not");
+  refused("\"offset_s\": 0.137", "\"offset_s\": 1000", "overlap by 0.0 s");
+  refused("\"offset_s\": 0.137", "\"offset_s\": \"guess\"", "\"estimate\"");
+  refused("ticks*.csv", "tacks*.csv", "fits no pattern", 2);
+  refused("\"nominal\": 0.4", "\"nominal\": null", "/robot/parameters/0/nominal");
+}
+
+TEST_F(CliLogs, ClocksThatDifferAreSaidAndNotTouched) {
+  const ProcessResult run = import(drive({}), map("\"offset_s\": 0.137", "\"offset_s\": 0"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("runs 0.137 s ahead of the wheels"));
+  EXPECT_THAT(run.err, HasSubstr("not applied"));
+}
+
+// The sample drive in all formats; true: 0.4120, 0.05040, 0.04985 m.
+class SampleLogs : public CliLogs, public ::testing::WithParamInterface<Args> {};
+
+TEST_P(SampleLogs, GiveTheTrueRobot) {
+  ODOBENCH_NEEDS_SHARED();
+  Args logs;
+  for (const std::string& name : GetParam())
+    logs.push_back(name.starts_with("--") ? name : (shared_folder() / "datasets/logs" / name).string());
+  const ProcessResult run = calibrate(logs, {"--per-turn=4096"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 3e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Logs, SampleLogs,
+    ::testing::Values(Args{"courier_none.bag"}, Args{"courier_bz2.bag"}, Args{"courier_lz4.bag"},
+                      Args{"courier_none.mcap"}, Args{"courier_lz4.mcap"}, Args{"courier_zstd.mcap"},
+                      Args{"courier_rosbag2_plain"}, Args{"courier_rosbag2_split"},
+                      Args{"courier_rosbag2_zstd_file"}, Args{"courier_rosbag2_zstd_message"},
+                      Args{"courier_v5.mat"}, Args{"courier_v7.mat"}, Args{"courier.npz"},
+                      Args{"courier_deflated.npz"}, Args{"drive.jsonl"}, Args{"merged_european.csv"},
+                      Args{"ticks_ns.csv", "mocap_mm_deg.csv"}, Args{"wheels.txt", "mocap.tum"},
+                      Args{"wheels.txt", "mocap_euroc.csv"}, Args{"wheels.txt", "mocap_kitti.txt"}),
+    [](const auto& test) {
+      std::string name;
+      for (const std::string& part : test.param)
+        for (const char c : part) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+      return name;
+    });
+
+}  // namespace
+}  // namespace odobench::testing
