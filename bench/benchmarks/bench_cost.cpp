@@ -84,11 +84,11 @@ void register_all(const Setting& s) {
     problem->normal_equations(s.nominal, e);
     benchmark::DoNotOptimize(e.cost);
   });
-  add("residuals_and_jacobian", 1, [&s, problem] {
-    Vector r(problem->residual_count());
-    Matrix j(problem->residual_count(), kCalibrationParameters);
-    problem->residuals_and_jacobian(s.nominal, r, j);
-    benchmark::DoNotOptimize(j.data());
+  const auto r = std::make_shared<Vector>(problem->residual_count());
+  const auto j = std::make_shared<Matrix>(problem->residual_count(), kCalibrationParameters);
+  add("residuals_and_jacobian", 1, [&s, problem, r, j] {
+    problem->residuals_and_jacobian(s.nominal, *r, *j);
+    benchmark::DoNotOptimize(j->data());
   });
   for (const InstructionSet k : available_instruction_sets()) {
     const auto structure = std::make_shared<const CalibrationStructure>(s.recordings, s.nominal, k);

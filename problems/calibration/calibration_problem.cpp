@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
-#include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/structure.hpp"
 
 namespace odobench {
@@ -173,33 +172,7 @@ void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
 
 void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const {
   if (general_) return general_->residuals_and_jacobian(z, r, j);
-  const LinearMatrix chain = linear_jacobian(z);
-  Eigen::Index row = 0;
-  for (const Recording& recording : recordings_) {
-    const PoseTrack q = direct::integrate(recording, z);
-    // Derivatives of the pose with respect to the linear parameters (r, P, Q).
-    LinearVector gx = LinearVector::Zero(), gy = LinearVector::Zero(), gt = LinearVector::Zero();
-    for (std::size_t k = 0; k + 1 < recording.size(); ++k, row += 3) {
-      const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
-      const double cos_theta = std::cos(q.theta[k]), sin_theta = std::sin(q.theta[k]);
-      gx -= (q.y[k + 1] - q.y[k]) * gt;
-      gy += (q.x[k + 1] - q.x[k]) * gt;
-      for (std::size_t i = 0; i < kWheelCount; ++i) {
-        const auto w = static_cast<Eigen::Index>(i);
-        const double turn = 0.25 * dt * wheel_speed_of(recording, i)[k];
-        const double c = turn * std::cos(steering_of(recording, i)[k]),
-                     s = turn * std::sin(steering_of(recording, i)[k]);
-        gx[w] += cos_theta * c - sin_theta * s;
-        gy[w] += sin_theta * c + cos_theta * s;
-        gt[4 + w] -= c;
-        gt[8 + w] += s;
-      }
-      r.segment<3>(row) = pose_error(q, recording, k + 1);
-      j.row(row) = gx.transpose() * chain;
-      j.row(row + 1) = gy.transpose() * chain;
-      j.row(row + 2) = gt.transpose() * chain;
-    }
-  }
+  structure_->residuals_and_jacobian(recordings_, z, r, j);
 }
 
 MaxErrors max_errors(const Recording& recording, const PoseTrack& q) {

@@ -19,8 +19,7 @@ namespace odobench::kernel {
 
 inline constexpr int kStreams = 10;
 inline constexpr int kLinear = 12;
-inline constexpr int kHeading = 8;                             // P_1..P_4, Q_1..Q_4
-inline constexpr int kTriangle = kLinear * (kLinear + 1) / 2;  // lower triangle, row by row
+inline constexpr int kHeading = 8;  // P_1..P_4, Q_1..Q_4
 inline constexpr int kMaxWidth = 8;
 // Largest |dtheta| of a step for which the rotation polynomial is exact to 1e-15; beyond it the `exact` form
 // is used.
@@ -54,13 +53,29 @@ struct StreamBlock {
 };
 inline constexpr int kMostStreams = 16;
 
+// Derivatives by at most kMostColumns numbers. Lower triangles are stored row by row: (i, j) is entry
+// i (i + 1) / 2 + j. The twelve of s, in their order, or the parameters of a robot.
+inline constexpr int kMostColumns = 24;
+inline constexpr int triangle(int columns) {
+  return columns * (columns + 1) / 2;
+}
+
+// e = position - reference, g = its derivative, all relative to the segment's start.
 struct NormalSums {
   CostSums cost;
-  double heading0[kHeading][kMaxWidth];                   // in: dtheta/d(P, Q) at the segment's start
-  double gx[kLinear][kMaxWidth], gy[kLinear][kMaxWidth];  // derivative of the displacement over the segment
-  double sum_gx[kLinear][kMaxWidth], sum_gy[kLinear][kMaxWidth];  // sums over the samples
-  double jtr[kLinear][kMaxWidth];                                 // sum of gx ex + gy ey
-  double jtj[kTriangle][kMaxWidth];                               // sum of gx gx' + gy gy'
+  double heading0[kMostColumns][kMaxWidth];  // in: derivative of the heading at the segment's start; 0 for r
+  double gx[kMostColumns][kMaxWidth], gy[kMostColumns][kMaxWidth];          // over the segment
+  double sum_gx[kMostColumns][kMaxWidth], sum_gy[kMostColumns][kMaxWidth];  // sums over the samples
+  double jtr[kMostColumns][kMaxWidth];                                      // sum of gx ex + gy ey
+  // Sum of gx gx' + gy gy'. Of `normal` without half the sum of d d' over every second step, the last of the
+  // segment among them, where d is the change of g in that step: see StepSquares.
+  double jtj[triangle(kMostColumns)][kMaxWidth];
+};
+
+// dM/dz_p, 3 x S row by row, one after the other: by[(p * 3 + row) * streams + stream].
+struct StreamDerivatives {
+  const double* by;
+  int columns;
 };
 
 struct Kernel {
@@ -73,6 +88,8 @@ struct Kernel {
   // Steps must turn by less than kMaxAngle.
   void (*streams)(const StreamBlock&, const double* m, CostSums&);
   void (*streams_tail)(const StreamBlock&, const double* m, CostSums&);
+  void (*streams_normal)(const StreamBlock&, const double* m, const StreamDerivatives&, NormalSums&);
+  void (*streams_normal_tail)(const StreamBlock&, const double* m, const StreamDerivatives&, NormalSums&);
 };
 
 // Throws std::invalid_argument when the processor does not have it.

@@ -2,7 +2,6 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/range.hpp"
@@ -12,6 +11,9 @@ namespace {
 
 using Eigen::Index;
 using robots::IntegrationRule;
+
+// As the kernels take M.
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr long kStepsOfSegment = 256;
 constexpr Index kRowsAtOnce = 512;
@@ -99,18 +101,43 @@ void LinearStreams::finish() {
   rows_.conservativeResize(rows_.cols(), Eigen::NoChange);
 }
 
+void LinearStreams::begin_lanes(const Drive& drive, const Block& block, const Vector& h,
+                                kernel::CostSums& sums) const {
+  for (int lane = 0; lane < block.width; ++lane) {
+    const Segment& segment = drive.segments[block.segment + static_cast<std::size_t>(lane)];
+    const double theta = drive.start[2] + segment.turned.dot(h);
+    sums.cos0[lane] = std::cos(theta);
+    sums.sin0[lane] = std::sin(theta);
+  }
+}
+
+kernel::StreamBlock LinearStreams::kernel_block(const Block& block) const {
+  return {&data_[block.data], block.steps, static_cast<int>(streams_), rule_};
+}
+
+bool LinearStreams::turns_little(const Vector& h) const {
+  // Written so that numbers that are none go the same way.
+  return h.cwiseAbs().dot(largest_) <= kernel::kMaxAngle;
+}
+
+Vector LinearStreams::heading_residual(const Vector& h) const {
+  return rows_.topLeftCorner(streams_, streams_).triangularView<Eigen::Upper>() * (h - origin_) +
+         rows_.col(streams_).head(streams_);
+}
+
+double LinearStreams::joined_cost(double positions, const Vector& residual, double position,
+                                  double heading) const {
+  const double rest = rows_(streams_, streams_);
+  return std::max(0.0, position * positions) + heading * (residual.squaredNorm() + rest * rest);
+}
+
 double LinearStreams::drive_cost(const Drive& drive, const double* m, const Vector& h) const {
   double x = drive.start[0], y = drive.start[1], cost = 0;
   kernel::CostSums sums;
   for (const Block& block : drive.blocks) {
     const Segment* segments = &drive.segments[block.segment];
-    for (int lane = 0; lane < block.width; ++lane) {
-      const double theta = drive.start[2] + segments[lane].turned.dot(h);
-      sums.cos0[lane] = std::cos(theta);
-      sums.sin0[lane] = std::sin(theta);
-    }
-    (block.width == 1 ? kernel_.streams_tail : kernel_.streams)(
-        {&data_[block.data], block.steps, static_cast<int>(streams_), rule_}, m, sums);
+    begin_lanes(drive, block, h, sums);
+    (block.width == 1 ? kernel_.streams_tail : kernel_.streams)(kernel_block(block), m, sums);
     for (int lane = 0; lane < block.width; ++lane) {
       const double ex = x - segments[lane].x, ey = y - segments[lane].y;
       cost += sums.squares[lane] + 2 * (ex * sums.ex[lane] + ey * sums.ey[lane]) +
@@ -124,18 +151,57 @@ double LinearStreams::drive_cost(const Drive& drive, const double* m, const Vect
 
 double LinearStreams::cost(const Matrix& m, double position, double heading) const {
   const Vector h = m.row(2).transpose();
-  // Written so that numbers that are none go the same way.
-  if (!(h.cwiseAbs().dot(largest_) <= kernel::kMaxAngle)) return kNotANumber;
-  std::array<double, 3 * kernel::kMostStreams> rows{};
-  for (Index i = 0; i < 3; ++i)
-    for (Index j = 0; j < streams_; ++j) rows[static_cast<std::size_t>(i * streams_ + j)] = m(i, j);
-  const Vector residual =
-      rows_.topLeftCorner(streams_, streams_).triangularView<Eigen::Upper>() * (h - origin_) +
-      rows_.col(streams_).head(streams_);
-  const double rest = rows_(streams_, streams_);
+  if (!turns_little(h)) return kNotANumber;
+  const RowMajor rows = m;
   double positions = 0;
   for (const Drive& drive : drives_) positions += drive_cost(drive, rows.data(), h);
-  return std::max(0.0, position * positions) + heading * (residual.squaredNorm() + rest * rest);
+  return joined_cost(positions, heading_residual(h), position, heading);
+}
+
+void LinearStreams::add_drive(const Drive& drive, const double* m, const Vector& h, const Matrix& heading_by,
+                              const kernel::StreamDerivatives& by, NormalTotals& totals) const {
+  totals.start(drive.start[0], drive.start[1]);
+  kernel::NormalSums sums;
+  double x[kernel::kMaxWidth], y[kernel::kMaxWidth];
+  for (const Block& block : drive.blocks) {
+    begin_lanes(drive, block, h, sums.cost);
+    for (int lane = 0; lane < block.width; ++lane) {
+      const Segment& segment = drive.segments[block.segment + static_cast<std::size_t>(lane)];
+      x[lane] = segment.x;
+      y[lane] = segment.y;
+      const Vector turned_by = heading_by * segment.turned;
+      for (int p = 0; p < by.columns; ++p) sums.heading0[p][lane] = turned_by[p];
+    }
+    (block.width == 1 ? kernel_.streams_normal_tail : kernel_.streams_normal)(kernel_block(block), m, by,
+                                                                              sums);
+    totals.add(sums, block.width, block.steps, x, y);
+  }
+}
+
+bool LinearStreams::normal_equations(const Matrix& m, const std::vector<Matrix>& by, double position,
+                                     double heading, NormalEquations& out) const {
+  const Vector h = m.row(2).transpose();
+  const auto n = static_cast<Index>(by.size());
+  if (!turns_little(h) || n > kernel::kMostColumns) return false;
+  const RowMajor rows = m;
+  RowMajor derivatives(3 * n, streams_);
+  Matrix heading_by(n, streams_);
+  for (Index p = 0; p < n; ++p) {
+    derivatives.middleRows<3>(3 * p) = by[static_cast<std::size_t>(p)];
+    heading_by.row(p) = derivatives.row(3 * p + 2);
+  }
+  NormalTotals totals(static_cast<int>(n));
+  for (const Drive& drive : drives_)
+    add_drive(drive, rows.data(), h, heading_by, {derivatives.data(), static_cast<int>(n)}, totals);
+  const Vector residual = heading_residual(h);
+  const Matrix r = rows_.topLeftCorner(streams_, streams_).triangularView<Eigen::Upper>();
+  const Matrix turned_by = r * heading_by.transpose();  // S x n
+  out.cost = joined_cost(totals.cost(), residual, position, heading);
+  out.jtr = position * totals.jtr() + heading * (turned_by.transpose() * residual);
+  out.jtj = position * totals.jtj();
+  out.jtj.selfadjointView<Eigen::Lower>().rankUpdate(turned_by.transpose(), heading);
+  out.jtj.triangularView<Eigen::StrictlyUpper>() = out.jtj.transpose();
+  return true;
 }
 
 }  // namespace odobench

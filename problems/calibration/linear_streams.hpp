@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "problems/calibration/kernel.hpp"
+#include "problems/calibration/normal_totals.hpp"
 #include "problems/instruction_set.hpp"
-#include "problems/matrices.hpp"
+#include "problems/problem.hpp"
 #include "problems/robots/integration.hpp"
 
 namespace odobench {
@@ -32,6 +33,11 @@ class LinearStreams {
   // position * (dx^2 + dy^2) + heading * dtheta^2, summed over all samples. Not-a-number where a step would
   // turn further than the kernel's series hold: then it is for the general form to say.
   double cost(const Matrix& m, double position, double heading) const;
+  // The same and, with `by` the derivatives of M by the n parameters (3 x S each), J'r (n) and J'J (n x n)
+  // of the residuals sqrt(position) (dx, dy), sqrt(heading) dtheta of all samples. False, and `out` as it
+  // was, where the cost would be not-a-number, and for more than kernel::kMostColumns parameters.
+  bool normal_equations(const Matrix& m, const std::vector<Matrix>& by, double position, double heading,
+                        NormalEquations& out) const;
 
  private:
   struct Segment {
@@ -52,7 +58,16 @@ class LinearStreams {
   void reduce();
   void add_block(const Matrix& streams, const Eigen::Vector3d& start, const Matrix& reference, int width,
                  long steps, Eigen::Index& next, Vector& turned, Drive& drive);
+  // The heading where the lanes of a block begin.
+  void begin_lanes(const Drive& drive, const Block& block, const Vector& h, kernel::CostSums& sums) const;
+  kernel::StreamBlock kernel_block(const Block& block) const;
+  bool turns_little(const Vector& h) const;
+  // R (h - h0) + q
+  Vector heading_residual(const Vector& h) const;
+  double joined_cost(double positions, const Vector& heading_residual, double position, double heading) const;
   double drive_cost(const Drive& drive, const double* rows, const Vector& h) const;
+  void add_drive(const Drive& drive, const double* rows, const Vector& h, const Matrix& heading_by,
+                 const kernel::StreamDerivatives& by, NormalTotals& totals) const;
 
   kernel::Kernel kernel_;
   kernel::StepRule rule_;

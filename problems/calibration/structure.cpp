@@ -130,6 +130,7 @@ CalibrationStructure::CalibrationStructure(const std::vector<Recording>& recordi
     heading.add(recording, steps);
   }
   heading_ = heading.form();
+  squares_.finish();
 }
 
 void CalibrationStructure::plan_recording(const Recording& recording, const Increments& list) {
@@ -154,6 +155,7 @@ void CalibrationStructure::plan_recording(const Recording& recording, const Incr
         for (Eigen::Index j = 0; j < kHeading; ++j) row[j * width] = cs[j];
         row[8 * width] = recording.reference.x[sample + 1] - recording.reference.x[first];
         row[9 * width] = recording.reference.y[sample + 1] - recording.reference.y[first];
+        if ((length - k) % 2 == 1) squares_.add(cs, heading);
         heading += heading_increment(cs);
       }
     }
@@ -230,60 +232,38 @@ void CalibrationStructure::batch_cost(const ConstMatrixRef& candidates, VectorRe
 }
 
 void CalibrationStructure::add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact,
-                                      double& cost, LinearVector& jtr, LinearMatrix& jtj) const {
-  double x = 0, y = 0;
-  LinearVector gx0 = LinearVector::Zero(), gy0 = LinearVector::Zero();  // derivative of the position so far
+                                      NormalTotals& totals) const {
+  totals.start(0, 0);
   kernel::NormalSums sums;
+  double reference_x[kernel::kMaxWidth], reference_y[kernel::kMaxWidth];
   for (const BlockPlan& block : plan.blocks) {
     for (int lane = 0; lane < block.width; ++lane) {
       const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
       const double theta = plan.theta0 + segment.heading0.dot(s.tail<kHeading>());
       sums.cost.cos0[lane] = std::cos(theta);
       sums.cost.sin0[lane] = std::sin(theta);
-      for (int j = 0; j < kHeading; ++j) sums.heading0[j][lane] = segment.heading0[j];
+      for (int j = 0; j < kLinear - kHeading; ++j) sums.heading0[j][lane] = 0;
+      for (int j = 0; j < kHeading; ++j) sums.heading0[kLinear - kHeading + j][lane] = segment.heading0[j];
+      reference_x[lane] = segment.x_ref;
+      reference_y[lane] = segment.y_ref;
     }
     (block.width == 1 ? kernel_.normal_tail : kernel_.normal)({&data_[block.data], block.steps}, s.data(),
                                                               exact, sums);
-    for (int lane = 0; lane < block.width; ++lane) {
-      const Segment& segment = plan.segments[block.segment + static_cast<std::size_t>(lane)];
-      const auto n = static_cast<double>(segment.steps);
-      const double ex0 = x - segment.x_ref, ey0 = y - segment.y_ref;
-      const double ex = sums.cost.ex[lane], ey = sums.cost.ey[lane];
-      LinearVector sx, sy, gx, gy;
-      int entry = 0;
-      for (int i = 0; i < kLinear; ++i) {
-        sx[i] = sums.sum_gx[i][lane];
-        sy[i] = sums.sum_gy[i][lane];
-        gx[i] = sums.gx[i][lane];
-        gy[i] = sums.gy[i][lane];
-        jtr[i] += sums.jtr[i][lane];
-        for (int j = 0; j <= i; ++j, ++entry) jtj(i, j) += sums.jtj[entry][lane];
-      }
-      cost += sums.cost.squares[lane] + 2 * (ex0 * ex + ey0 * ey) + n * (ex0 * ex0 + ey0 * ey0);
-      jtr += sx * ex0 + sy * ey0 + gx0 * (ex + n * ex0) + gy0 * (ey + n * ey0);
-      const LinearMatrix cross =
-          (sx + 0.5 * n * gx0) * gx0.transpose() + (sy + 0.5 * n * gy0) * gy0.transpose();
-      jtj.triangularView<Eigen::Lower>() += cross + cross.transpose();
-      x += sums.cost.x[lane];
-      y += sums.cost.y[lane];
-      gx0 += gx;
-      gy0 += gy;
-    }
+    totals.add(sums, block.width, block.steps, reference_x, reference_y);
   }
 }
 
 void CalibrationStructure::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
   const LinearVector s = linear_parameters(z);
   const bool exact = needs_exact_rotation(s);
-  double cost = heading_cost(s);
-  LinearVector jtr = LinearVector::Zero();
-  LinearMatrix jtj = LinearMatrix::Zero();
-  for (const RecordingPlan& plan : plans_) add_normal(plan, s, exact, cost, jtr, jtj);
-  jtj.triangularView<Eigen::StrictlyUpper>() = jtj.transpose();
+  NormalTotals totals(kLinear, heading_cost(s));
+  for (const RecordingPlan& plan : plans_) add_normal(plan, s, exact, totals);
+  LinearVector jtr = totals.jtr();
+  LinearMatrix jtj = LinearMatrix(totals.jtj()) + 0.5 * squares_.at(s);
   jtr.tail<kHeading>() += heading_.r.transpose().triangularView<Eigen::Lower>() * heading_residual(s);
   jtj.bottomRightCorner<kHeading, kHeading>() += heading_.a;
   const LinearMatrix d = linear_jacobian(z);
-  out.cost = cost;
+  out.cost = totals.cost();
   out.jtr = d.transpose() * jtr;
   const LinearMatrix full = d.transpose() * jtj * d;
   out.jtj = 0.5 * (full + full.transpose());

@@ -5,6 +5,8 @@
 
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/calibration/kernel.hpp"
+#include "problems/calibration/normal_totals.hpp"
+#include "problems/calibration/step_squares.hpp"
 
 namespace odobench {
 
@@ -56,6 +58,9 @@ class CalibrationStructure {
   double cost(const ConstVectorRef& z) const;
   void batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const;
   void normal_equations(const ConstVectorRef& z, NormalEquations& out) const;
+  // `recordings`: those of the constructor. Every number of r and j is written, once.
+  void residuals_and_jacobian(const std::vector<Recording>& recordings, const ConstVectorRef& z, VectorRef r,
+                              MatrixRef j) const;
 
  private:
   // True when a step could turn further than the rotation polynomial holds.
@@ -64,12 +69,12 @@ class CalibrationStructure {
   HeadingVector heading_residual(const LinearVector& s) const;
   double heading_cost(const LinearVector& s) const;
   double recording_cost(const RecordingPlan& plan, const LinearVector& s, bool exact) const;
-  void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, double& cost,
-                  LinearVector& jtr, LinearMatrix& jtj) const;
+  void add_normal(const RecordingPlan& plan, const LinearVector& s, bool exact, NormalTotals& totals) const;
   void plan_recording(const Recording& recording, const Increments& list);
 
   kernel::Kernel kernel_;
   HeadingForm heading_;
+  StepSquares squares_;                                 // of every second step, as the kernels leave them out
   HeadingVector largest_step_ = HeadingVector::Zero();  // max |C_i|, max |S_i|
   std::vector<RecordingPlan> plans_;
   std::vector<double> data_;

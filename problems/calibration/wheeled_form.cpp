@@ -310,6 +310,10 @@ void WheeledForm::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, M
 
 void WheeledForm::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
   const Point at = point(z, true);
+  if (fast_ && at.usable &&
+      fast_->normal_equations(at.matrix, at.derivatives, options_.position_weight, options_.heading_weight,
+                              out))
+    return;
   const Index n = parameter_count_;
   out.cost = 0;
   out.jtr = Vector::Zero(n);

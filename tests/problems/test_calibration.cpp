@@ -109,6 +109,48 @@ TEST(Calibration, NormalEquationsAreThoseOfTheDenseJacobian) {
   }
 }
 
+// Rows of eight or sixteen steps at a time, two steps a row: every length around where these end, in all
+// lanes and in the last steps of a recording.
+TEST(Calibration, NormalEquationsAtTheEndsOfBlocks) {
+  const Vector z = perturbed(1);
+  for (const InstructionSet k : available_instruction_sets()) {
+    const int width = kernel::select(k).width;
+    for (const int steps : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33})
+      for (const int last : {0, 1, 2}) {
+        const std::vector<Recording> recordings{
+            synthetic_recording(width * steps + std::min(last, width - 1) + 1, 0.03, steps)};
+        const CalibrationProblem problem(nominal_robot(), recordings, k);
+        Vector r(problem.residual_count());
+        Matrix j(r.size(), 12);
+        problem.residuals_and_jacobian(z, r, j);
+        NormalEquations e;
+        problem.normal_equations(z, e);
+        EXPECT_EQ(e.cost, problem.cost(z)) << to_string(k) << " " << steps;
+        const Vector norms = j.colwise().norm();
+        EXPECT_LT(((e.jtr - j.transpose() * r).array() / norms.array()).abs().maxCoeff(), 1e-11 * r.norm())
+            << to_string(k) << " " << steps;
+        const Matrix difference = e.jtj - j.transpose() * j;
+        EXPECT_LT(difference.cwiseQuotient(norms * norms.transpose()).cwiseAbs().maxCoeff(), 1e-11)
+            << to_string(k) << " " << steps;
+      }
+  }
+}
+
+TEST(Calibration, EveryNumberOfTheJacobianIsWritten) {
+  for (const int samples : {2, 64, 65, 66, 129, 700}) {
+    const std::vector<Recording> recordings{synthetic_recording(samples, 0.03, 1),
+                                            synthetic_recording(5, 0.03, 2)};
+    const CalibrationProblem problem(nominal_robot(), recordings);
+    const Vector z = perturbed(2);
+    Vector r = Vector::Constant(problem.residual_count(), NAN), expected(r.size());
+    Matrix j = Matrix::Constant(r.size(), 12, NAN);
+    problem.residuals_and_jacobian(z, r, j);
+    problem.residuals(z, expected);
+    EXPECT_TRUE(j.allFinite()) << samples;
+    EXPECT_LT((r - expected).norm(), 1e-12 * expected.norm()) << samples;
+  }
+}
+
 TEST(Calibration, JacobianMatchesCentralDifferences) {
   const CalibrationProblem problem(nominal_robot(), {synthetic_recording(400, 0.03, 3)});
   const Vector z = perturbed(3);

@@ -178,7 +178,29 @@ TEST(WheeledCalibration, TheThesisRobotByTheGeneralPathAgreesWithTheStructuredFo
     structured.normal_equations(z, b);
     EXPECT_LT((a.jtr - b.jtr).norm(), 1e-10 * b.jtr.norm());
     EXPECT_LT((a.jtj - b.jtj).norm(), 1e-10 * b.jtj.norm());
+    Vector r(structured.residual_count()), r_general(r.size());
+    Matrix j(r.size(), 12), j_general(r.size(), 12);
+    structured.residuals_and_jacobian(z, r, j);
+    general.residuals_and_jacobian(z, r_general, j_general);
+    EXPECT_LT((r - r_general).norm(), 1e-10 * r.norm());
+    EXPECT_LT((j - j_general).norm(), 1e-10 * j.norm());
   }
+}
+
+// The fast form's against the general form's Jacobian.
+void expect_normal_equations(const CalibrationProblem& problem, const Vector& z, const std::string& what) {
+  Vector r(problem.residual_count());
+  Matrix j(r.size(), z.size());
+  problem.residuals_and_jacobian(z, r, j);
+  NormalEquations e;
+  problem.normal_equations(z, e);
+  EXPECT_EQ(e.cost, problem.cost(z)) << what;
+  EXPECT_NEAR(e.cost / r.squaredNorm(), 1, 1e-11) << what;
+  const Vector norms = j.colwise().norm().cwiseMax(1e-300);
+  const Vector jtr = j.transpose() * r;
+  EXPECT_LT((e.jtr - jtr).cwiseQuotient(norms).cwiseAbs().maxCoeff(), 1e-10 * r.norm()) << what;
+  const Matrix difference = e.jtj - j.transpose() * j;
+  EXPECT_LT(difference.cwiseQuotient(norms * norms.transpose()).cwiseAbs().maxCoeff(), 1e-10) << what;
 }
 
 TEST(WheeledCalibration, EveryKernelAgreesWithTheGeneralForm) {
@@ -203,9 +225,29 @@ TEST(WheeledCalibration, EveryKernelAgreesWithTheGeneralForm) {
           problem.residuals(z, r);
           EXPECT_NEAR(problem.cost(z) / r.squaredNorm(), 1, 1e-11)
               << kinematics << " " << options.text() << " " << to_string(kernel);
+          expect_normal_equations(problem, z, kinematics + " " + to_string(kernel));
         }
       }
     }
+  }
+}
+
+// The kernels take eight steps at a time.
+TEST(WheeledCalibration, NormalEquationsAtTheEndsOfBlocks) {
+  for (const std::string kinematics : {"differential", "omni4_full", "4wis4wid"}) {
+    const Robot robot = robot_of_class(kinematics, {});
+    for (const InstructionSet kernel : available_instruction_sets())
+      for (const int steps : {1, 7, 8, 9, 15, 16, 17}) {
+        const int width = kernel::select(kernel).width;
+        CalibrationOptions options;
+        options.rule = IntegrationRule::Arc;
+        const std::vector<Recording> recordings{
+            made_up_drive(robot, width * steps + 2, SignalKind::Increment),
+            made_up_drive(robot, width * steps + 1, SignalKind::Increment)};
+        const CalibrationProblem problem(robot, recordings, options, kernel);
+        expect_normal_equations(problem, inside(problem.parameters(), 1),
+                                kinematics + " " + std::to_string(steps));
+      }
   }
 }
 
@@ -220,6 +262,7 @@ TEST(WheeledCalibration, StepsThatTurnFarAreLeftToTheGeneralForm) {
   Vector residuals(problem.residual_count());
   problem.residuals(z, residuals);
   EXPECT_NEAR(problem.cost(z) / residuals.squaredNorm(), 1, 1e-13);
+  expect_normal_equations(problem, z, "far");
 }
 
 TEST(WheeledCalibration, ExactDataHaveNoCostToAllDigits) {
