@@ -56,7 +56,8 @@ reports/kinds/fusion          reports/records reports/statistics reports/render 
 reports/kinds/kinds.cpp       reports/
 reports/page                  reports/
 problems
-problems/calibration          problems problems/robots datasets datasets/robots
+problems/calibration          problems problems/calibration/kernel problems/robots datasets datasets/robots
+problems/calibration/kernel   problems
 problems/calibration/classical  problems problems/calibration problems/robots datasets datasets/robots
 problems/classic              problems
 problems/entropy              problems datasets/entropy/entropy_window.hpp
@@ -80,7 +81,7 @@ bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalo
 bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
-bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/
 tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/

@@ -37,7 +37,7 @@ TESTS = {
     "datasets/native/validate.cpp": ["test_dataset_refusals", "test_dataset"],
     "datasets/import/vitko2024/vitko2024_csv.cpp": ["test_vitko2024_csv", "test_import_vitko2024"],
     "problems/calibration/direct_form.cpp": ["test_calibration"],
-    "problems/calibration/kernel_impl.hpp": ["test_calibration"],
+    "problems/calibration/kernel/kernel_impl.hpp": ["test_calibration"],
     "problems/calibration/structure.cpp": ["test_calibration"],
     "problems/entropy/profile_form.cpp": ["test_entropy_windows", "test_sliding_filter"],
     "reports/regression/baseline_check.cpp": ["test_baseline"],

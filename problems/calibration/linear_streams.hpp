@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 #include "problems/calibration/normal_totals.hpp"
 #include "problems/instruction_set.hpp"
 #include "problems/problem.hpp"

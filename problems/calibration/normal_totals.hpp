@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 #include "problems/matrices.hpp"
 
 namespace odobench {

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 #include "problems/matrices.hpp"
 
 namespace odobench {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "problems/calibration/calibration_problem.hpp"
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 #include "problems/calibration/normal_totals.hpp"
 #include "problems/calibration/step_squares.hpp"
 

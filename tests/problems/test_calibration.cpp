@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problems/calibration/calibration_problem.hpp"
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 #include "problems/calibration/structure.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/certificate/verdict.hpp"

@@ -1,7 +1,7 @@
 // Robots whose motions are M s (kernel.hpp, StreamBlock): cost and normal equations. For kernel_*.cpp only.
 #pragma once
 
-#include "problems/calibration/kernel_rows.hpp"
+#include "problems/calibration/kernel/kernel_rows.hpp"
 
 namespace odobench::kernel {
 namespace {

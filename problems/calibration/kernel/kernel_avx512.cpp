@@ -2,8 +2,8 @@
 #if !defined(__AVX512F__) || !defined(__AVX512DQ__) || !defined(__AVX512VL__) || !defined(__FMA__)
 #error "this file is to be compiled with -mavx512f -mavx512dq -mavx512vl -mfma"
 #endif
-#include "problems/calibration/kernel_impl.hpp"
-#include "problems/calibration/kernel_variants.hpp"
+#include "problems/calibration/kernel/kernel_impl.hpp"
+#include "problems/calibration/kernel/kernel_variants.hpp"
 
 namespace odobench::kernel {
 

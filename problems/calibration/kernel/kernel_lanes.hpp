@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 
 namespace odobench::kernel {
 namespace {

@@ -3,8 +3,8 @@
 // run elsewhere.
 #pragma once
 
-#include "problems/calibration/kernel_rows.hpp"
-#include "problems/calibration/kernel_streams.hpp"
+#include "problems/calibration/kernel/kernel_rows.hpp"
+#include "problems/calibration/kernel/kernel_streams.hpp"
 
 namespace odobench::kernel {
 namespace {

@@ -2,7 +2,7 @@
 // in registers for all of them. For kernel_*.cpp only.
 #pragma once
 
-#include "problems/calibration/kernel_lanes.hpp"
+#include "problems/calibration/kernel/kernel_lanes.hpp"
 
 namespace odobench::kernel {
 namespace {

@@ -1,5 +1,5 @@
-#include "problems/calibration/kernel_impl.hpp"
-#include "problems/calibration/kernel_variants.hpp"
+#include "problems/calibration/kernel/kernel_impl.hpp"
+#include "problems/calibration/kernel/kernel_variants.hpp"
 
 namespace odobench::kernel {
 

@@ -2,8 +2,8 @@
 #if !defined(__AVX2__) || !defined(__FMA__)
 #error "this file is to be compiled with -mavx2 -mfma"
 #endif
-#include "problems/calibration/kernel_impl.hpp"
-#include "problems/calibration/kernel_variants.hpp"
+#include "problems/calibration/kernel/kernel_impl.hpp"
+#include "problems/calibration/kernel/kernel_variants.hpp"
 
 namespace odobench::kernel {
 

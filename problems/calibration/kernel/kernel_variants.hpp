@@ -1,7 +1,7 @@
 // The compiled widths; avx2() and avx512() exist on x86-64 only.
 #pragma once
 
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 
 namespace odobench::kernel {
 

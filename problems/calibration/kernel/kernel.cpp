@@ -1,6 +1,6 @@
-#include "problems/calibration/kernel.hpp"
+#include "problems/calibration/kernel/kernel.hpp"
 
-#include "problems/calibration/kernel_variants.hpp"
+#include "problems/calibration/kernel/kernel_variants.hpp"
 #include "problems/instruction_set.hpp"
 
 namespace odobench::kernel {
