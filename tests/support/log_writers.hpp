@@ -1,5 +1,5 @@
-// Small recordings of ROS messages, written by the tests themselves: serialised messages, bags, MCAP files and
-// rosbag2's tables. Independent of the readers but for the name of an encoding.
+// Small recordings of ROS messages, written by the tests themselves: serialised messages, bags, MCAP files
+// and rosbag2's tables. Independent of the readers but for the name of an encoding.
 #pragma once
 
 #include <cstdint>
@@ -64,8 +64,8 @@ struct WrittenLog {
   std::vector<WrittenMessage> messages;
 };
 
-// 30 messages of each of /ticks (test_msgs/Ticks: header, int32 left, right), /joints (JointState: in turns two
-// joints in changing order and one that is alone) and /tf (two frames per message). Message k has stamp
+// 30 messages of each of /ticks (test_msgs/Ticks: header, int32 left, right), /joints (JointState: in turns
+// two joints in changing order and one that is alone) and /tf (two frames per message). Message k has stamp
 // 1,000 s + k * 10 ms, is logged 3 ms later, and has left = k, right = -2 k, position of "left" k / 2, of
 // "right" k / 4, x of odom -> base k / 8, of map -> odom 7.
 WrittenLog small_log(RosEncoding encoding);
