@@ -11,6 +11,11 @@
 #include "datasets/logs/ros/log_input.hpp"
 
 namespace odobench {
+namespace {
+
+constexpr std::size_t kSmallestRoom = 4 << 10;
+
+}  // namespace
 
 std::optional<LogCompression> log_compression(std::string_view name) {
   if (name.empty() || name == "none") return LogCompression::None;
@@ -20,6 +25,11 @@ std::optional<LogCompression> log_compression(std::string_view name) {
   return std::nullopt;
 }
 
+std::uint64_t zstd_size(std::string_view frame) {
+  // Both kinds of "unknown" are larger than any limit.
+  return std::min<std::uint64_t>(ZSTD_getFrameContentSize(frame.data(), frame.size()), kLargestLogRecord);
+}
+
 bool is_zstd(std::string_view bytes) {
   return bytes.substr(0, 4) == "\x28\xB5\x2F\xFD";
 }
@@ -27,9 +37,9 @@ bool is_zstd(std::string_view bytes) {
 struct Decompressor::State {
   LogCompression compression = LogCompression::None;
   std::uint64_t most = 0;
-  // All of the address space, none of the memory until it is written to: neither claims nor copies.
+  // Room for `most`, which takes no memory until it is written to: neither claims nor copies count.
   std::unique_ptr<char[]> out;
-  std::size_t used = 0;
+  std::size_t capacity = 0, used = 0;
   bool finished = false;
   LZ4F_dctx* lz4 = nullptr;
   ZSTD_DCtx* zstd = nullptr;
@@ -125,7 +135,10 @@ void Decompressor::begin(LogCompression compression, std::uint64_t most) {
   s.most = std::min(most, kLargestLogRecord);
   s.used = 0;
   s.finished = false;
-  if (s.out == nullptr) s.out.reset(new char[kLargestLogRecord + 1]);
+  if (s.capacity <= s.most) {
+    s.capacity = std::max<std::size_t>(static_cast<std::size_t>(s.most) + 1, kSmallestRoom);
+    s.out.reset(new char[s.capacity]);
+  }
   if (compression == LogCompression::Lz4) {
     if (s.lz4 == nullptr && LZ4F_isError(LZ4F_createDecompressionContext(&s.lz4, LZ4F_VERSION)))
       throw std::bad_alloc();

@@ -19,6 +19,9 @@ std::optional<LogCompression> log_compression(std::string_view name);
 // Begins with the magic bytes of a zstd frame.
 bool is_zstd(std::string_view bytes);
 
+// What a frame of zstd says of its size, at most kLargestLogRecord, which also stands for an unknown one.
+std::uint64_t zstd_size(std::string_view frame);
+
 // What is wrong with compressed data, e.g. "lz4: ERROR_frameType_unknown"; the caller says where.
 class BadCompression : public std::runtime_error {
  public:

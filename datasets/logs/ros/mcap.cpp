@@ -81,6 +81,12 @@ class McapWalk {
 };
 
 bool McapWalk::top_record() {
+  if (input_.left() == 0) {
+    sink_.notes.push_back(
+        fmt::format("{}: no end: its recorder was stopped; all messages up to there are read",
+                    shown_path(input_.file())));
+    return false;
+  }
   const std::uint64_t byte = input_.position();
   const std::string_view head = input_.take(kMcapHead);
   const auto op = static_cast<unsigned char>(head[0]);

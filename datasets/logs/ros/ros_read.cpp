@@ -43,6 +43,14 @@ std::int64_t to_nanoseconds(const MessageRow& row, RosPrimitive primitive, std::
   return std::abs(static_cast<double>(row.time)) * static_cast<double>(unit) < kMost ? row.time * unit : 0;
 }
 
+// "odom,base" of "transforms[header.frame_id=odom,child_frame_id=base]".
+std::string values_of(const PathStep& step) {
+  std::string values;
+  for (const PathStep::Selector& selector : step.selectors)
+    values += (values.empty() ? "" : ",") + selector.value;
+  return values;
+}
+
 class ReadSink : public RosSink {
  public:
   ReadSink(const std::vector<LogRequest>& requests, const LogOptions& options)
@@ -69,6 +77,7 @@ class ReadSink : public RosSink {
     std::int64_t messages = 0, without_values = 0, without_stamp = 0, zero_stamp = 0;
     std::int64_t unit = 0;  // of a time that is a plain number; 0: not yet known
     bool known = false;     // its source is there
+    bool json = false;
     std::string type;
     std::vector<bool> found;  // by field
   };
@@ -85,7 +94,10 @@ class ReadSink : public RosSink {
   void append(State& s, const MessageRow& row, const RowReader& reader, std::int64_t log_ns);
   std::int64_t time_of(State& s, const MessageRow& row, const RowReader& reader, std::int64_t log_ns);
   void refuse_unknown_source(const State& s) const;
+  std::vector<std::string> paths_in(const State& s, const Stop& stop) const;
   void refuse_unfound(const State& s, const Stop& stop) const;
+  [[noreturn]] void refuse_name(const State& s, const std::vector<PathStep>& steps, std::size_t at,
+                                const Stop& stop) const;
   void add_notes(State& s) const;
 
   const LogOptions& options_;
@@ -115,6 +127,7 @@ void ReadSink::add_reader(const RosChannel& channel, std::size_t state, Channel&
   State& s = states_[state];
   s.known = true;
   if (s.type.empty()) s.type = short_type_name(channel.type);
+  s.json = channel.encoding == RosEncoding::Json;
   std::string unreadable = channel.unreadable;
   const MessageRequest request{s.request->fields, s.request->text, s.request->time};
   try {
@@ -195,39 +208,53 @@ void ReadSink::refuse_unknown_source(const State& s) const {
                                           shown(fmt::format("{}", fmt::join(seen_topics_, ", ")), 1000)));
 }
 
-// "no joint 'left_wheel' in 600 messages; joints: caster_joint, left_wheel_joint".
+// The fields of a source as they come up in its messages.
+std::vector<std::string> ReadSink::paths_in(const State& s, const Stop& stop) const {
+  std::vector<std::string> paths;
+  for (const LogSource& source : survey_recording(*files_, options_, stop))
+    if (source.name == s.request->source)
+      for (const LogField& field : source.fields) paths.push_back(field.path);
+  return paths;
+}
+
+// Fields that no message has: names and elements that are looked for, and all of JSON.
 void ReadSink::refuse_unfound(const State& s, const Stop& stop) const {
   for (std::size_t i = 0; i < s.found.size(); ++i) {
+    if (s.found[i] || s.messages == 0) continue;
     const std::string& path = s.request->fields[i];
-    const bool selects = path.find('=') != std::string::npos && path.find('[') != std::string::npos;
-    if (s.found[i] || s.messages == 0 || !selects) continue;
     const std::vector<PathStep> steps = parse_message_path(path);
     const auto step =
         std::find_if(steps.begin(), steps.end(), [](const PathStep& p) { return !p.selectors.empty(); });
-    std::string prefix, asked;
-    for (auto p = steps.begin(); p != step; ++p) prefix += path_step_text(*p) + ".";
-    prefix += step->name + "[";
-    for (const PathStep::Selector& selector : step->selectors)
-      asked += fmt::format("{}{}", asked.empty() ? "" : ",", selector.value);
-    // What there is.
-    std::set<std::string> names;
-    for (const LogSource& source : survey_recording(*files_, options_, stop)) {
-      if (source.name != s.request->source) continue;
-      for (const LogField& field : source.fields) {
-        if (field.path.compare(0, prefix.size(), prefix) != 0) continue;
-        std::string name;
-        for (const PathStep& p : parse_message_path(field.path))
-          for (const PathStep::Selector& selector : p.selectors)
-            name += fmt::format("{}{}", name.empty() ? "" : ",", selector.value);
-        if (!name.empty()) names.insert(name);
-      }
-    }
-    const std::string word = s.type == "sensor_msgs/JointState" ? "joint" : step->selectors.back().key;
-    throw DataError(fmt::format("{}: topic {}: no {} '{}' in {} messages; {}s: {}",
-                                shown_path(files_->front()->file()), shown(s.request->source), shown(word),
-                                shown(asked), s.messages, shown(word),
-                                shown(fmt::format("{}", fmt::join(names, ", ")), 1000)));
+    if (step != steps.end()) refuse_name(s, steps, static_cast<std::size_t>(step - steps.begin()), stop);
+    if (!s.json) continue;
+    const std::vector<std::string> known = paths_in(s, stop);
+    throw std::invalid_argument(
+        fmt::format("no field '{}' in {}{} it has {}", shown(path), shown(s.type),
+                    did_you_mean(path, known) + (did_you_mean(path, known).empty() ? ":" : ""),
+                    shown(fmt::format("{}", fmt::join(known, ", ")), 1000)));
   }
+}
+
+// "no joint 'left_wheel' in 600 messages; joints: caster_joint, left_wheel_joint".
+void ReadSink::refuse_name(const State& s, const std::vector<PathStep>& steps, std::size_t at,
+                           const Stop& stop) const {
+  const PathStep& step = steps[at];
+  std::string prefix;
+  for (std::size_t i = 0; i < at; ++i) prefix += path_step_text(steps[i]) + ".";
+  prefix += step.name + "[";
+  std::set<std::string> names;  // what there is
+  for (const std::string& path : paths_in(s, stop))
+    if (path.compare(0, prefix.size(), prefix) == 0) {
+      const auto parts = parse_message_path(path);
+      if (at < parts.size() && !parts[at].selectors.empty()) names.insert(values_of(parts[at]));
+    }
+  const std::string word = s.type == "sensor_msgs/JointState" ? "joint"
+                           : step.selectors.size() > 1        ? "element"
+                                                              : step.selectors[0].key;
+  throw DataError(fmt::format("{}: topic {}: no {} '{}' in {} messages; {}s: {}",
+                              shown_path(files_->front()->file()), shown(s.request->source), shown(word),
+                              shown(values_of(step)), s.messages, shown(word),
+                              shown(fmt::format("{}", fmt::join(names, ", ")), 1000)));
 }
 
 void ReadSink::add_notes(State& s) const {

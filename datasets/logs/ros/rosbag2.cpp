@@ -269,7 +269,7 @@ void Rosbag2Walk::read_messages() {
 
 std::string_view Rosbag2Walk::decompress(std::string_view data, std::int64_t row) {
   try {
-    decompressor_.begin(LogCompression::Zstd, kLargestLogRecord);
+    decompressor_.begin(LogCompression::Zstd, zstd_size(data));
     decompressor_.put(data);
     const std::string_view message = decompressor_.end();
     decompressed_.add(message.size());
