@@ -117,8 +117,6 @@ void JsonTopics::find_time(const std::string& name, std::string& path, std::stri
   for (const auto& [other, topic] : topics_) names.push_back(other);
   if (found == place_.end()) refuse_unknown("source", name, shown_path(file_), names);
   Topic& topic = topics_[found->second].second;
-  std::string of_path;
-  const std::vector<Field> fields = topic.fields;
   if (!topic.decided) decide(topic);
   if (path.empty() && topic.time != JsonPaths::kNone) path = paths_.path(topic.time);
   if (path.empty())
@@ -132,7 +130,7 @@ void JsonTopics::find_time(const std::string& name, std::string& path, std::stri
     return;
   }
   names.clear();
-  for (const Field& field : fields) {
+  for (const Field& field : topic.fields) {
     names.push_back(field.info.path);
     if (field.info.path != path) continue;
     unit = time_unit_of_name(path);

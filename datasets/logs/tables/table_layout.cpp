@@ -31,10 +31,10 @@ char decimal_of_option(const std::string& text) {
   throw std::invalid_argument(fmt::format("decimal: found '{}', expected '.' or ','", shown(text)));
 }
 
-// The most frequent count of fields in the later half.
+// The most frequent count of fields.
 std::size_t usual_count(const std::vector<Row>& rows) {
   std::map<std::size_t, std::size_t> counts;
-  for (std::size_t i = rows.size() / 2; i < rows.size(); ++i) ++counts[rows[i].size()];
+  for (const Row& row : rows) ++counts[row.size()];
   std::size_t best = 0, times = 0;
   for (const auto& [count, n] : counts)
     if (n >= times) {
@@ -150,8 +150,9 @@ void find_time(TableLayout& layout, const std::vector<Row>& rows) {
       if (named && !name_tells_time(layout.names[c])) continue;
       const std::vector<std::string> values = sample_of(rows, c);
       std::string unit = named ? time_unit_of_name(layout.names[c]) : "";
-      const bool numbers = !values.empty() && std::all_of(values.begin(), values.end(), looks_like_number);
-      if (unit.empty() || !numbers) unit = time_unit_of_values(values);
+      const auto numbers = std::count_if(values.begin(), values.end(), looks_like_number);
+      if (unit.empty() || 2 * static_cast<std::size_t>(numbers) < values.size())
+        unit = time_unit_of_values(values);
       if (unit.empty()) continue;
       layout.time = c;
       layout.time_unit = unit;

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/npz.hpp"
+#include "datasets/logs/arrays/npz.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -7,7 +7,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 namespace odobench {
 namespace {

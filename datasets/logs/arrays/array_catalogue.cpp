@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/array_catalogue.hpp"
+#include "datasets/logs/arrays/array_catalogue.hpp"
 
 #include <fmt/format.h>
 
