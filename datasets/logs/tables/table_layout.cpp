@@ -69,7 +69,7 @@ std::size_t count_header_rows(const std::vector<Row>& rows, std::size_t count) {
       word = word || (numeric[c] && !number_or_nothing(row[c]));
       number = number || looks_like_number(row[c]);
     }
-    if (!word || (header > 0 && number)) break;
+    if (!word || (header > 0 && (number || row.size() < count))) break;
   }
   return header;
 }
