@@ -177,6 +177,12 @@ TEST(CsvLog, Questions) {
   LogOptions bad;
   bad.decimal = ";";
   EXPECT_TRUE(says(usage_error([&] { open_log(file, bad); }), {"decimal"}));
+  LogOptions encoding;
+  encoding.encoding = "utf-8";
+  const std::string latin = folder.file("l.csv", "t_s,\xB0\n1,2\n2,3\n");
+  EXPECT_TRUE(says(data_error([&] { open_log(latin, encoding); }), {"no UTF-8", "latin-1"}));
+  encoding.encoding = "ebcdic";
+  EXPECT_TRUE(says(usage_error([&] { open_log(latin, encoding); }), {"encoding", "ebcdic"}));
 }
 
 TEST(CsvLog, CutFilesCanBeKept) {

@@ -155,6 +155,14 @@ TEST(Npz, Bombs) {
   EXPECT_LT(testing::peak_megabytes() - before, 100);
 }
 
+TEST(Npz, DecompressedBytesAreLimited) {
+  const TemporaryFolder folder;
+  LogOptions options;
+  options.max_bytes = 500;
+  const std::string file = folder.file("a.npz", zip_file(members(), {true, false, 0}));
+  EXPECT_TRUE(says(data_error([&] { open_log(file, options)->sources(Stop()); }), {"--max-bytes"}));
+}
+
 TEST(Npz, DamagedCopies) {
   testing::expect_robust(zip_file(members()), "a.npz", 2000);
   testing::expect_robust(zip_file(members(), {true, true, 0}), "a.npz", 2000);

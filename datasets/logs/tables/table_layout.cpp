@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -197,6 +198,9 @@ std::vector<Row> split_head(const TableHead& head, const LogOptions& options, Ta
 }  // namespace
 
 TableLayout find_table_layout(const std::filesystem::path& file, const LogOptions& options) {
+  if (!options.encoding.empty() && options.encoding != "utf-8" && options.encoding != "latin-1")
+    throw std::invalid_argument(
+        fmt::format("encoding: found '{}', expected utf-8 or latin-1", shown(options.encoding)));
   TableLayout layout;
   if (!options.comment.empty()) layout.comment_marks = options.comment;
   const TableHead head = read_table_head(file, layout.comment_marks);
@@ -220,7 +224,10 @@ TableLayout find_table_layout(const std::filesystem::path& file, const LogOption
     layout.decimal = ',';
   if (layout.separator == ',' && layout.decimal == ',')
     layout.notes.push_back("decimal comma in a table separated by commas: numbers need quotes");
-  if (head.latin1) layout.notes.push_back("names are no UTF-8: read as Latin-1");
+  if (head.latin1 && options.encoding == "utf-8")
+    throw DataError(fmt::format("{}: found names that are no UTF-8, expected \"encoding\": \"latin-1\"",
+                                shown_path(file)));
+  if (head.latin1 && options.encoding.empty()) layout.notes.push_back("names are no UTF-8: read as Latin-1");
   const std::vector<bool> numeric = numeric_columns(rows, count);
   TableSource source;
   for (std::size_t c = 0; c < count; ++c) {
