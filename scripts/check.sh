@@ -36,9 +36,10 @@ datasets                      datasets/robots
 datasets/csv
 datasets/entropy              datasets/csv
 datasets/logs                 datasets/csv
+datasets/logs/arrays          datasets/logs datasets/csv
 datasets/logs/ros             datasets/logs datasets/logs/ros/messages
 datasets/logs/ros/messages    datasets/logs
-datasets/logs/tables          datasets/logs datasets/csv
+datasets/logs/tables          datasets/logs datasets/logs/arrays datasets/csv
 datasets/logs/formats.cpp     datasets/
 datasets/native               datasets datasets/robots
 datasets/robots

@@ -67,7 +67,8 @@ struct LogOptions {
   bool keep_cut = false;                            // of a file that is cut off, the part before
   std::int64_t max_bytes = std::int64_t{64} << 30;  // decompressed, per file
   std::vector<std::filesystem::path> messages;      // definitions: FILE.msg
-  // How tables are written where looking at them does not tell.
+  // How tables are written where looking at them does not tell: separator one character, "tab" or "blanks";
+  // decimal "." or ","; the characters that begin a comment; encoding "utf-8" or "latin-1".
   std::string separator, decimal, comment, encoding;
   std::optional<int> header_rows;
   std::string plane;  // of the ground in a trajectory: "xy", "zx" (y up), "xz" (camera axes); "": looked at

@@ -31,8 +31,8 @@ std::string counted(std::int64_t count, const std::string& what);
 
 // Most values kept of one file, over all requests.
 inline constexpr std::int64_t kMostValues = 100'000'000;
-// Most fields of one file.
-inline constexpr std::size_t kMostColumns = 10'000;
+// Most fields of one table, and of all sources of a file together.
+inline constexpr std::size_t kMostColumns = 10'000, kMostFields = 65'536;
 // DataError "FILE: more than 100,000,000 values asked for".
 [[noreturn]] void refuse_too_many_values(const std::string& file);
 

@@ -149,10 +149,10 @@ TEST(CsvStream, LinesUpToTheLongest) {
     EXPECT_EQ(stream.field(0), "y");
     return longest;
   };
-  for (const std::size_t length : {std::size_t{65535}, std::size_t{65536}, CsvStream::kLongestLine})
+  for (const std::size_t length : {std::size_t{65535}, std::size_t{65536}, TextLines::kLongestLine})
     EXPECT_EQ(field_of(length), length);
   EXPECT_EQ(
-      data_error([&] { field_of(CsvStream::kLongestLine + (1 << 17)); }),
+      data_error([&] { field_of(TextLines::kLongestLine + (1 << 17)); }),
       (folder / "a.csv").string() + ":3: found a line longer than 1048576 bytes, expected rows of numbers");
 }
 

@@ -8,10 +8,10 @@
 #include "base/files.hpp"
 #include "base/sha256.hpp"
 #include "datasets/csv/column_name.hpp"
+#include "datasets/csv/decimal_time.hpp"
 #include "datasets/import/csv/csv_files.hpp"
 #include "datasets/import/csv/csv_import.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
-#include "datasets/csv/decimal_time.hpp"
 #include "tests/support/data_error.hpp"
 #include "tests/support/run_process.hpp"
 

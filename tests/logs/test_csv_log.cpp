@@ -33,7 +33,8 @@ std::vector<LogSource> sources(const std::string& text, const LogOptions& option
 
 std::vector<std::string> names(const std::string& text) {
   std::vector<std::string> paths;
-  for (const LogField& field : sources(text).at(0).fields) paths.push_back(field.path);
+  const LogSource source = sources(text).at(0);
+  for (const LogField& field : source.fields) paths.push_back(field.path);
   return paths;
 }
 
@@ -67,7 +68,8 @@ TEST(CsvLog, OneTableInManyHands) {
 }
 
 TEST(CsvLog, Headers) {
-  EXPECT_THAT(names("time [ms],x [mm],yaw (deg)\n1,2,3\n2,3,4\n"), ElementsAre("time [ms]", "x [mm]", "yaw (deg)"));
+  EXPECT_THAT(names("time [ms],x [mm],yaw (deg)\n1,2,3\n2,3,4\n"),
+              ElementsAre("time [ms]", "x [mm]", "yaw (deg)"));
   EXPECT_THAT(names("time,x\n[ms],[mm]\n10,2\n20,3\n"), ElementsAre("time [ms]", "x [mm]"));
   EXPECT_THAT(names("time,wheel,wheel\ns,left,right\n0.1,2,3\n0.2,3,4\n"),
               ElementsAre("time.s", "wheel.left", "wheel.right"));
@@ -102,7 +104,8 @@ TEST(CsvLog, TwoSensorsInOneTable) {
 }
 
 TEST(CsvLog, SourcesAndText) {
-  const LogSource source = sources("frame,time [ms],state,on\n0,10,idle,true\n1,20,busy,false\n2,50,busy,true\n")[0];
+  const LogSource source =
+      sources("frame,time [ms],state,on\n0,10,idle,true\n1,20,busy,false\n2,50,busy,true\n")[0];
   EXPECT_EQ(source.rows, 3);
   EXPECT_EQ(source.first_ns, 10000000);
   EXPECT_EQ(source.last_ns, 50000000);
@@ -114,9 +117,11 @@ TEST(CsvLog, SourcesAndText) {
   const LogTable table = read("frame,time [ms],state,on\n0,10,idle,true\n1,20,busy,false\n", wanted);
   EXPECT_THAT(table.text[0], ElementsAre("idle", "busy"));
   EXPECT_THAT(table.values[0], ElementsAre(1, 0));
-  const LogTable dated = read("stamp,a\n2025-10-09 08:53:20.5,1\n2025-10-09 08:53:21,2\n", request("", {"a"}));
+  const LogTable dated =
+      read("stamp,a\n2025-10-09 08:53:20.5,1\n2025-10-09 08:53:21,2\n", request("", {"a"}));
   EXPECT_THAT(dated.time_ns, ElementsAre(1760000000500000000, 1760000001000000000));
-  const LogTable clock = read("when,a\n00:00:01.5,1\n00:00:02.25,2\n", request("", {"a"}, "when", "%H:%M:%S.%f"));
+  const LogTable clock =
+      read("when,a\n00:00:01.5,1\n00:00:02.25,2\n", request("", {"a"}, "when", "%H:%M:%S.%f"));
   EXPECT_THAT(clock.time_ns, ElementsAre(1500000000, 2250000000));
 }
 
@@ -131,18 +136,24 @@ TEST(CsvLog, Refusals) {
   EXPECT_TRUE(says(said("t_s;a;links\n1;2;12,5\n2;3;1,5\n", request("", {"links"}), point),
                    {"log.csv:2: field 3 'links': '12,5' is no number with decimal point: decimal comma? give "
                     "\"decimal\": \",\""}));
-  EXPECT_TRUE(says(said("t_s,a\n1,2\n2,x1\n3,1\n4,1\n5,1\n", request("", {"a"})), {"log.csv:3: field 2 'a': 'x1' is no number"}));
-  EXPECT_TRUE(says(said("t_s,a\n1,2\n0.85,3\n", request("", {"a"})), {"log.csv:3: time goes back by 0.150 s"}));
-  EXPECT_TRUE(says(said("t_s,a\n1,2\nx,3\n3,4\n4,5\n", request("", {"a"})), {"log.csv:3: field 1 't_s': 'x' is no time in s"}));
-  EXPECT_TRUE(says(said("t_s,a\n1,2\n2,3,4\n3,4\n", request("", {"a"})), {"log.csv:3: found 3 fields, expected 2", "decimal commas"}));
+  EXPECT_TRUE(says(said("t_s,a\n1,2\n2,x1\n3,1\n4,1\n5,1\n", request("", {"a"})),
+                   {"log.csv:3: field 2 'a': 'x1' is no number"}));
+  EXPECT_TRUE(
+      says(said("t_s,a\n1,2\n0.85,3\n", request("", {"a"})), {"log.csv:3: time goes back by 0.150 s"}));
+  EXPECT_TRUE(says(said("t_s,a\n1,2\nx,3\n3,4\n4,5\n", request("", {"a"})),
+                   {"log.csv:3: field 1 't_s': 'x' is no time in s"}));
+  EXPECT_TRUE(says(said("t_s,a\n1,2\n2,3,4\n3,4\n", request("", {"a"})),
+                   {"log.csv:3: found 3 fields, expected 2", "decimal commas"}));
   EXPECT_TRUE(says(said("t_s,a,b\n1,2,3\n2,3", request("", {"a"})), {"log.csv:3: ", "cut off"}));
   EXPECT_TRUE(says(said("t_s,a\n1,1e60\n2,3\n", request("", {"a"})), {"at most 1e+50"}));
   EXPECT_TRUE(says(said("t_s,a\n1,inf\n2,3\n", request("", {"a"})), {"log.csv:2: field 2"}));
   EXPECT_TRUE(says(said("\xFF\xFEt", request("", {"a"})), {"UTF-16"}));
   EXPECT_TRUE(says(said("\n\n", request("", {"a"})), {"found no line with a row"}));
   EXPECT_TRUE(says(said("t_s,a\n1,\"2\n2,3\n3,4\n", request("", {"a"})), {"log.csv:2: found a quote"}));
-  EXPECT_TRUE(says(said("t_s,a\n1,\x1b[31m\n2,3\n3,4\n4,5\n", request("", {"a"})), {"'\\x1b[31m' is no number"}));
-  EXPECT_TRUE(says(said("t_s,a\n" + std::string(2 << 20, 'x') + "\n", request("", {"a"})), {"longer than 1048576"}));
+  EXPECT_TRUE(
+      says(said("t_s,a\n1,\x1b[31m\n2,3\n3,4\n4,5\n", request("", {"a"})), {"'\\x1b[31m' is no number"}));
+  EXPECT_TRUE(
+      says(said("t_s,a\n" + std::string(2 << 20, 'x') + "\n", request("", {"a"})), {"longer than 1048576"}));
   std::string wide = "t_s";
   for (int k = 0; k < 10'001; ++k) wide += ",c";
   EXPECT_TRUE(says(said(wide + "\n", request("", {"a"})), {"found 10002 columns, expected at most 10000"}));
@@ -153,15 +164,25 @@ TEST(CsvLog, Questions) {
   const std::string file = folder.file("ticks.csv", "t_s,left,right\n1,2,3\n2,3,4\n");
   EXPECT_TRUE(says(usage_error([&] { read_log(file, request("", {"lefft"})); }),
                    {"no field 'lefft' in", "ticks.csv, did you mean 'left'? it has t_s, left, right"}));
-  EXPECT_TRUE(says(usage_error([&] { read_log(file, request("wheels", {"left"})); }), {"no source 'wheels'"}));
-  EXPECT_TRUE(says(usage_error([&] { read_log(file, request("", {"left"}, "time")); }), {"no column 'time'"}));
-  EXPECT_TRUE(says(usage_error([&] { read_log(file, request("", {"left"}, "right")); }), {"'right'", "time_unit"}));
+  EXPECT_TRUE(
+      says(usage_error([&] { read_log(file, request("wheels", {"left"})); }), {"no source 'wheels'"}));
+  EXPECT_TRUE(
+      says(usage_error([&] { read_log(file, request("", {"left"}, "time")); }), {"no column 'time'"}));
+  EXPECT_TRUE(
+      says(usage_error([&] { read_log(file, request("", {"left"}, "right")); }), {"'right'", "time_unit"}));
   const std::string timeless = folder.file("x.csv", "a,b\n1,5\n2,4\n");
-  EXPECT_TRUE(says(usage_error([&] { read_log(timeless, request("", {"a"})); }), {"no column that tells time"}));
+  EXPECT_TRUE(
+      says(usage_error([&] { read_log(timeless, request("", {"a"})); }), {"no column that tells time"}));
   EXPECT_THAT(read_log(timeless, request("", {"b"}, "a", "s")).time_ns, ElementsAre(1000000000, 2000000000));
   LogOptions bad;
   bad.decimal = ";";
   EXPECT_TRUE(says(usage_error([&] { open_log(file, bad); }), {"decimal"}));
+  LogOptions encoding;
+  encoding.encoding = "utf-8";
+  const std::string latin = folder.file("l.csv", "t_s,\xB0\n1,2\n2,3\n");
+  EXPECT_TRUE(says(data_error([&] { open_log(latin, encoding); }), {"no UTF-8", "latin-1"}));
+  encoding.encoding = "ebcdic";
+  EXPECT_TRUE(says(usage_error([&] { open_log(latin, encoding); }), {"encoding", "ebcdic"}));
 }
 
 TEST(CsvLog, CutFilesCanBeKept) {
@@ -175,7 +196,8 @@ TEST(CsvLog, CutFilesCanBeKept) {
 TEST(CsvLog, SeveralRequestsInOneReading) {
   const TemporaryFolder folder;
   const std::string file = folder.file("two.csv", "t_s;l;x\n1;2;\n2;;3\n3;4;\n");
-  const std::vector<LogTable> tables = open_log(file)->read({request("", {"l"}), request("", {"x", "x"})}, Stop());
+  const std::vector<LogTable> tables =
+      open_log(file)->read({request("", {"l"}), request("", {"x", "x"})}, Stop());
   EXPECT_THAT(tables[0].values[0], ElementsAre(2, 4));
   EXPECT_THAT(tables[1].values[1], ElementsAre(3));
 }
@@ -194,9 +216,11 @@ TEST(CsvLog, OnlyRegularFiles) {
 }
 
 TEST(CsvLog, DamagedCopies) {
-  testing::expect_robust(kMark + "# a comment\r\nZeit [s];links [1/min];x [m];Gier [\xB0]\r\n0,001;;1,25;37,0\r\n0,004;-0,08;;\r\n"
-                         "0,010;\"1,5\";1,28;36,9\r\n0,020;;;\r\n0,023;0,12;;\r\n",
-                         "log.csv", 2000);
+  testing::expect_robust(
+      kMark +
+          "# a comment\r\nZeit [s];links [1/min];x [m];Gier [\xB0]\r\n0,001;;1,25;37,0\r\n0,004;-0,08;;\r\n"
+          "0,010;\"1,5\";1,28;36,9\r\n0,020;;;\r\n0,023;0,12;;\r\n",
+      "log.csv", 2000);
   EXPECT_LT(testing::peak_megabytes(), 300);
 }
 
@@ -214,7 +238,8 @@ TEST(CsvLog, Samples) {
   EXPECT_EQ(mocap.time_ns.front(), 137171000);
   EXPECT_NEAR(sum_of(mocap.values[0]), 2664199.22457505, 6);  // as rounded to 10 um in the file
   EXPECT_NEAR(sum_of(mocap.values[1]), 1117610.4194118107, 6);
-  const LogTable wheels = read_log(folder / "merged_european.csv", request("", {"links [1/min]", "rechts [1/min]"}));
+  const LogTable wheels =
+      read_log(folder / "merged_european.csv", request("", {"links [1/min]", "rechts [1/min]"}));
   EXPECT_EQ(wheels.time_ns.size(), 600u);
   const LogTable pose = read_log(folder / "merged_european.csv", request("", {"x [m]", "Gier [\xC2\xB0]"}));
   EXPECT_EQ(pose.time_ns.size(), 1200u);

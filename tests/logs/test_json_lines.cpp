@@ -55,8 +55,9 @@ TEST(JsonLines, TopicsAreSources) {
 TEST(JsonLines, WithoutTopicsAndDecimalSeconds) {
   const TemporaryFolder folder;
   const std::string file = folder.file(
-      "a.jsonl", "{\"time\":1760000000.123456789,\"a\":{\"b\":[{\"c\":1}]}}\n{\"time\":1760000000.223456789,\"a\":{}}\n"
-                 "{\"time\":1760000000.323456789,\"a\":{\"b\":[{\"c\":3}]}}");
+      "a.jsonl",
+      "{\"time\":1760000000.123456789,\"a\":{\"b\":[{\"c\":1}]}}\n{\"time\":1760000000.223456789,\"a\":{}}\n"
+      "{\"time\":1760000000.323456789,\"a\":{\"b\":[{\"c\":3}]}}");
   const LogTable table = read_log(file, request("", {"a.b[0].c"}));
   EXPECT_THAT(table.time_ns, ElementsAre(1760000000123456789, 1760000000323456789));
   EXPECT_THAT(table.values[0], ElementsAre(1, 3));
@@ -72,14 +73,16 @@ TEST(JsonLines, Refusals) {
   const LogRequest a = request("", {"a"}, "t", "s");
   EXPECT_TRUE(says(said("{\"t\":1,\"a\":2}\n{\"t\":2,\"a\"}\n", a), {"a.jsonl:2: broken JSON"}));
   EXPECT_TRUE(says(said("{\"t\":1,\"a\":2}\n{\"t\":2,\"a", a), {"a.jsonl:2: ", "cut off"}));
-  EXPECT_TRUE(says(said("{\"t\":1,\"a\":2}\n{\"t\":0.85,\"a\":2}\n", a), {"a.jsonl:2: time goes back by 0.150 s"}));
+  EXPECT_TRUE(
+      says(said("{\"t\":1,\"a\":2}\n{\"t\":0.85,\"a\":2}\n", a), {"a.jsonl:2: time goes back by 0.150 s"}));
   EXPECT_TRUE(says(said("{\"t\":1,\"a\":\"x\"}\n", a), {"a.jsonl:1: field 'a' is no number"}));
   EXPECT_TRUE(says(said("{\"t\":\"x\",\"a\":1}\n", a), {"a.jsonl:1: field 't' is no time in s"}));
   EXPECT_TRUE(says(said("{\"t\":1,\"a\":NaN}\n", a), {"a.jsonl:1", "NaN"}));
   const std::string deep = "{\"t\":1,\"a\":" + std::string(40, '[') + std::string(40, ']') + "}\n";
   EXPECT_TRUE(says(said(deep, a), {"a.jsonl:1: found a value nested deeper than 32"}));
   const std::string far = folder.file("b.jsonl", kMixed);
-  EXPECT_TRUE(says(usage_error([&] { read_log(far, request("poses", {"yaw"})); }), {"no source 'poses'", "did you mean 'pose'?"}));
+  EXPECT_TRUE(says(usage_error([&] { read_log(far, request("poses", {"yaw"})); }),
+                   {"no source 'poses'", "did you mean 'pose'?"}));
   EXPECT_TRUE(says(usage_error([&] { read_log(far, request("pose", {"position.z"})); }),
                    {"no field 'position.z' in pose, did you mean 'position.x'? it has t, position.x"}));
   LogOptions keep;
@@ -93,9 +96,11 @@ TEST(JsonLines, Limits) {
   std::string wide = "{\"t\":1", array = "{\"t\":1,\"a\":[0";
   for (int k = 0; k < 11'000; ++k) wide += ",\"k" + std::to_string(k) + "\":1";
   for (int k = 0; k < 100'000; ++k) array += ",0";
-  EXPECT_TRUE(says(data_error([&] { open_log(folder.file("w.jsonl", wide + "}\n"))->sources(Stop()); }), {"more than 10000 fields"}));
+  EXPECT_TRUE(says(data_error([&] { open_log(folder.file("w.jsonl", wide + "}\n"))->sources(Stop()); }),
+                   {"more than 10000 fields"}));
   EXPECT_EQ(open_log(folder.file("a.jsonl", array + "]}\n"))->sources(Stop())[0].fields.size(), 17u);
-  EXPECT_THAT(read_log(folder.path() / "a.jsonl", request("", {"a[99999]"}, "t", "s")).values[0], ElementsAre(0));
+  EXPECT_THAT(read_log(folder.path() / "a.jsonl", request("", {"a[99999]"}, "t", "s")).values[0],
+              ElementsAre(0));
 }
 
 TEST(JsonLines, DamagedCopies) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ TEST(LogTime, NumbersAreExact) {
   EXPECT_EQ(as("s", "-0.000000001"), -1);
   EXPECT_EQ(as("s", "0.0000000005"), 1);  // finer than 1 ns: rounded
   EXPECT_EQ(as("s", "4e9"), 4000000000000000000);
-  for (const char* bad : {"", "x", "1.2.3", "4.1e9", "1 2", "nan", "--1", "."}) EXPECT_FALSE(as("s", bad)) << bad;
+  for (const char* bad : {"", "x", "1.2.3", "4.1e9", "1 2", "nan", "--1", "."})
+    EXPECT_FALSE(as("s", bad)) << bad;
   EXPECT_EQ(TimeUnit("us").of(std::int64_t{1760000000000234}), 1760000000000234000);
   EXPECT_FALSE(TimeUnit("s").of(std::int64_t{1} << 62));
   EXPECT_EQ(TimeUnit("s").of(12.25), 12250000000);
@@ -64,9 +66,9 @@ TEST(LogTime, Patterns) {
 
 TEST(LogTime, UnitsOfNames) {
   const std::vector<std::pair<std::string, std::string>> units{
-      {"time [ms]", "ms"}, {"stamp_ns", "ns"},   {"t_us", "us"},      {"Time (s)", "s"},   {"Zeit [s]", "s"},
-      {"time", ""},        {"links [1/min]", ""}, {"x [m]", ""},       {"t (\xC2\xB5s)", "us"}, {"speed [m/s]", ""},
-      {"millis", "ms"},    {"#timestamp [ns]", "ns"}};
+      {"time [ms]", "ms"},     {"stamp_ns", "ns"},  {"t_us", "us"},        {"Time (s)", "s"},
+      {"Zeit [s]", "s"},       {"time", ""},        {"links [1/min]", ""}, {"x [m]", ""},
+      {"t (\xC2\xB5s)", "us"}, {"speed [m/s]", ""}, {"millis", "ms"},      {"#timestamp [ns]", "ns"}};
   for (const auto& [name, unit] : units) EXPECT_EQ(time_unit_of_name(name), unit) << name;
   for (const char* name : {"t", "time", "stamp", "timestamp", "Zeit", "t_us", "header.stamp"})
     EXPECT_TRUE(name_tells_time(name)) << name;
@@ -84,9 +86,9 @@ TEST(LogTime, UnitsOfValues) {
   EXPECT_EQ(time_unit_of_values({"0", "20000", "40000"}), "us");
   EXPECT_EQ(time_unit_of_values({"0", "20000000", "40000000"}), "ns");
   EXPECT_EQ(time_unit_of_values({"2025-10-09T08:53:20Z", "2025-10-09T08:53:21Z"}), "iso8601");
-  EXPECT_EQ(time_unit_of_values({"0", "1", "2"}), "");        // a counter
-  EXPECT_EQ(time_unit_of_values({"0", "0.1", "0.05"}), "");   // goes back
-  EXPECT_EQ(time_unit_of_values({"0.1", "0.2"}), "");         // too few
+  EXPECT_EQ(time_unit_of_values({"0", "1", "2"}), "");       // a counter
+  EXPECT_EQ(time_unit_of_values({"0", "0.1", "0.05"}), "");  // goes back
+  EXPECT_EQ(time_unit_of_values({"0.1", "0.2"}), "");        // too few
   EXPECT_EQ(time_unit_of_values({"a", "b", "c"}), "");
   EXPECT_EQ(time_unit_of_values({}), "");
 }

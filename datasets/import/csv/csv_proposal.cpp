@@ -12,11 +12,11 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "datasets/csv/csv_table.hpp"
 #include "datasets/csv/column_name.hpp"
+#include "datasets/csv/csv_table.hpp"
+#include "datasets/csv/decimal_time.hpp"
 #include "datasets/import/csv/csv_files.hpp"
 #include "datasets/import/csv/csv_map.hpp"
-#include "datasets/csv/decimal_time.hpp"
 #include "datasets/robots/layouts.hpp"
 
 namespace odobench {

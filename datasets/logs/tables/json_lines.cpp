@@ -167,7 +167,8 @@ void JsonLinesLog::require_seen(const LinePlan& plan, const Stop& stop) const {
   }
   if (!plan.topic_seen) refuse_unknown("source", plan.request->source, shown_path(file_), names);
   const std::string& place = plan.request->source.empty() ? shown_path(file_) : shown(plan.request->source);
-  refuse_unknown("field", plan.table.time_ns.empty() ? plan.time_path : missing, place, fields);
+  const bool no_time = plan.table.time_ns.empty() && plan.no_value == 0;
+  refuse_unknown("field", no_time ? plan.time_path : missing, place, fields);
 }
 
 std::vector<LogTable> JsonLinesLog::read(const std::vector<LogRequest>& requests, const Stop& stop) const {

@@ -11,8 +11,8 @@
 namespace odobench {
 namespace {
 
-constexpr std::size_t kSamples = 24, kLongestSample = 48, kLongestFirst = 80;
-constexpr std::size_t kMostTopics = 65'536, kMostFields = 65'536;
+constexpr std::size_t kLineSamples = 24, kLongestSample = 48, kLongestFirst = 80;
+constexpr std::size_t kMostTopics = 65'536;
 
 std::string text_of(const JsonLeaf& leaf) {
   switch (leaf.kind) {
@@ -70,7 +70,7 @@ void JsonTopics::take_sample(Topic& topic, std::size_t node) {
           fmt::format("{}: found more than {} fields, expected fewer", shown_path(file_), kMostFields));
   }
   Field& field = topic.fields[at->second];
-  if (topic.decided || field.samples.size() >= kSamples) return;
+  if (topic.decided || field.samples.size() >= kLineSamples) return;
   const std::string text = text_of(leaf);
   if (text.size() <= kLongestSample) field.samples.push_back(text);
 }
@@ -83,7 +83,7 @@ void JsonTopics::take_line() {
   if (topic.decided) {
     if (topic.time == JsonPaths::kNone || !paths_.has(topic.time)) return;
     if (const auto stamp = stamp_of(paths_.leaf(topic.time), TimeUnit(topic.unit))) topic.stamps.add(*stamp);
-  } else if (topic.rows >= static_cast<std::int64_t>(kSamples)) {
+  } else if (topic.rows >= static_cast<std::int64_t>(kLineSamples)) {
     decide(topic);
   }
 }
@@ -117,8 +117,6 @@ void JsonTopics::find_time(const std::string& name, std::string& path, std::stri
   for (const auto& [other, topic] : topics_) names.push_back(other);
   if (found == place_.end()) refuse_unknown("source", name, shown_path(file_), names);
   Topic& topic = topics_[found->second].second;
-  std::string of_path;
-  const std::vector<Field> fields = topic.fields;
   if (!topic.decided) decide(topic);
   if (path.empty() && topic.time != JsonPaths::kNone) path = paths_.path(topic.time);
   if (path.empty())
@@ -132,7 +130,7 @@ void JsonTopics::find_time(const std::string& name, std::string& path, std::stri
     return;
   }
   names.clear();
-  for (const Field& field : fields) {
+  for (const Field& field : topic.fields) {
     names.push_back(field.info.path);
     if (field.info.path != path) continue;
     unit = time_unit_of_name(path);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -31,10 +32,10 @@ char decimal_of_option(const std::string& text) {
   throw std::invalid_argument(fmt::format("decimal: found '{}', expected '.' or ','", shown(text)));
 }
 
-// The most frequent count of fields in the later half.
+// The most frequent count of fields.
 std::size_t usual_count(const std::vector<Row>& rows) {
   std::map<std::size_t, std::size_t> counts;
-  for (std::size_t i = rows.size() / 2; i < rows.size(); ++i) ++counts[rows[i].size()];
+  for (const Row& row : rows) ++counts[row.size()];
   std::size_t best = 0, times = 0;
   for (const auto& [count, n] : counts)
     if (n >= times) {
@@ -69,7 +70,7 @@ std::size_t count_header_rows(const std::vector<Row>& rows, std::size_t count) {
       word = word || (numeric[c] && !number_or_nothing(row[c]));
       number = number || looks_like_number(row[c]);
     }
-    if (!word || (header > 0 && number)) break;
+    if (!word || (header > 0 && (number || row.size() < count))) break;
   }
   return header;
 }
@@ -150,8 +151,9 @@ void find_time(TableLayout& layout, const std::vector<Row>& rows) {
       if (named && !name_tells_time(layout.names[c])) continue;
       const std::vector<std::string> values = sample_of(rows, c);
       std::string unit = named ? time_unit_of_name(layout.names[c]) : "";
-      const bool numbers = !values.empty() && std::all_of(values.begin(), values.end(), looks_like_number);
-      if (unit.empty() || !numbers) unit = time_unit_of_values(values);
+      const auto numbers = std::count_if(values.begin(), values.end(), looks_like_number);
+      if (unit.empty() || 2 * static_cast<std::size_t>(numbers) < values.size())
+        unit = time_unit_of_values(values);
       if (unit.empty()) continue;
       layout.time = c;
       layout.time_unit = unit;
@@ -196,6 +198,9 @@ std::vector<Row> split_head(const TableHead& head, const LogOptions& options, Ta
 }  // namespace
 
 TableLayout find_table_layout(const std::filesystem::path& file, const LogOptions& options) {
+  if (!options.encoding.empty() && options.encoding != "utf-8" && options.encoding != "latin-1")
+    throw std::invalid_argument(
+        fmt::format("encoding: found '{}', expected utf-8 or latin-1", shown(options.encoding)));
   TableLayout layout;
   if (!options.comment.empty()) layout.comment_marks = options.comment;
   const TableHead head = read_table_head(file, layout.comment_marks);
@@ -219,7 +224,10 @@ TableLayout find_table_layout(const std::filesystem::path& file, const LogOption
     layout.decimal = ',';
   if (layout.separator == ',' && layout.decimal == ',')
     layout.notes.push_back("decimal comma in a table separated by commas: numbers need quotes");
-  if (head.latin1) layout.notes.push_back("names are no UTF-8: read as Latin-1");
+  if (head.latin1 && options.encoding == "utf-8")
+    throw DataError(fmt::format("{}: found names that are no UTF-8, expected \"encoding\": \"latin-1\"",
+                                shown_path(file)));
+  if (head.latin1 && options.encoding.empty()) layout.notes.push_back("names are no UTF-8: read as Latin-1");
   const std::vector<bool> numeric = numeric_columns(rows, count);
   TableSource source;
   for (std::size_t c = 0; c < count; ++c) {

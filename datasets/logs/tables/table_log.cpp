@@ -204,8 +204,10 @@ void TableLog::take_row(RowPlan& plan, const TableRows& rows, const std::vector<
     ++plan.no_value;
     return;
   }
-  for (std::size_t i = 0; i < plan.texts.size(); ++i)
-    plan.table.text[i].emplace_back(rows.field(plan.texts[i]));
+  for (std::size_t i = 0; i < plan.texts.size(); ++i) {
+    const std::string_view text = rows.field(plan.texts[i]);
+    plan.table.text[i].push_back(is_valid_utf8(text) ? std::string(text) : latin1_to_utf8(text));
+  }
   if (!plan.table.time_ns.empty() && *stamp < plan.table.time_ns.back())
     rows.fail(fmt::format("time goes back by {:.3f} s",
                           static_cast<double>(plan.table.time_ns.back() - *stamp) * 1e-9));

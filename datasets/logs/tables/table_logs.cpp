@@ -1,8 +1,8 @@
 #include "datasets/logs/tables/table_logs.hpp"
 
+#include "datasets/logs/arrays/mat.hpp"
+#include "datasets/logs/arrays/npz.hpp"
 #include "datasets/logs/tables/json_lines.hpp"
-#include "datasets/logs/tables/mat.hpp"
-#include "datasets/logs/tables/npz.hpp"
 #include "datasets/logs/tables/table_log.hpp"
 #include "datasets/logs/tables/trajectories.hpp"
 

@@ -25,8 +25,8 @@ class TableRows {
   bool next();
   // Of the k-th wanted column; valid until next().
   std::string_view field(std::size_t k) const { return fields_[k]; }
-  // As a number; empty fields, "nan", "NA" and the like are NaN. DataError "FILE:LINE: field 3 'links': 'x' is
-  // no number".
+  // As a number; empty fields, "nan", "NA" and the like are NaN. DataError "FILE:LINE: field 3 'links': 'x'
+  // is no number".
   double number(std::size_t k) const;
   std::size_t line() const { return lines_.line(); }
   bool cut() const { return cut_; }  // the last row was left out

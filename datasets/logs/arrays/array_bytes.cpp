@@ -2,8 +2,8 @@
 #include <cstring>
 #include <limits>
 
+#include "datasets/logs/arrays/array_log.hpp"
 #include "datasets/logs/log_names.hpp"
-#include "datasets/logs/tables/array_log.hpp"
 
 namespace odobench {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/logs/arrays/array_log.hpp"
 #include "datasets/logs/log_names.hpp"
-#include "datasets/logs/tables/array_log.hpp"
 
 namespace odobench {
 

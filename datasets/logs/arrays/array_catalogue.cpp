@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/array_catalogue.hpp"
+#include "datasets/logs/arrays/array_catalogue.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +13,7 @@
 namespace odobench {
 namespace {
 
-constexpr std::size_t kSamples = 50;
-constexpr std::size_t kMostFields = 65'536;
+constexpr std::size_t kVectorSamples = 50;
 
 // "ticks" of ticks_t, ticks_time_ns, ticks/t: what stands before the last word of a name that tells time.
 std::string time_prefix(const std::string& name) {
@@ -75,7 +74,7 @@ void ArrayCatalogue::numbers(const std::int64_t* whole, const double* real, std:
       if ((taken_ + i) / head.rows < array.first.size()) array.first[(taken_ + i) / head.rows] = text(i);
   }
   if (head.columns == 1) {
-    for (std::size_t i = 0; i < count && array.samples.size() < kSamples; ++i)
+    for (std::size_t i = 0; i < count && array.samples.size() < kVectorSamples; ++i)
       array.samples.push_back(text(i));
     for (std::size_t i = 0; i < count; ++i) {
       const bool begin = taken_ + i == 0;

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/mat.hpp"
+#include "datasets/logs/arrays/mat.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "datasets/logs/tables/array_log.hpp"
-#include "datasets/logs/tables/byte_source.hpp"
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/array_log.hpp"
+#include "datasets/logs/arrays/byte_source.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 namespace odobench {
 namespace {
@@ -247,12 +247,13 @@ void MatVariable::take_numbers(std::uint64_t& left, const std::string& name, std
   bytes_.skip(element.padding);
 }
 
-void walk_mat(const fs::path& file, ArrayVisitor& visitor, const Stop& stop) {
+void walk_mat(const fs::path& file, std::int64_t max_bytes, ArrayVisitor& visitor, const Stop& stop) {
   const std::string name = shown_path(file);
   FileBytes bytes(file);
   char header[kHeaderBytes];
   if (!bytes.read_exactly(header, sizeof header)) throw DataError(name + ": the header is cut off");
-  const bool swap = header[126] == 'M';  // "MI" instead of "IM"
+  auto left = static_cast<std::uint64_t>(max_bytes);  // bytes that may be decompressed
+  const bool swap = header[126] == 'M';               // "MI" instead of "IM"
   while (bytes.position() < bytes.size()) {
     const std::uint64_t at = bytes.position();
     const std::string place = fmt::format("{}: variable at byte {}", name, at);
@@ -265,12 +266,13 @@ void walk_mat(const fs::path& file, ArrayVisitor& visitor, const Stop& stop) {
                                   element->size, bytes.size() - begin));
     LimitedBytes part(bytes, element->size);
     if (element->type == kCompressed) {
-      InflatedBytes inflated(part, false, kLargestArray, place);
+      InflatedBytes inflated(part, false, std::min(left, kLargestArray), place);
       MatVariable variable(inflated, place, swap, visitor, stop);
       const std::optional<Element> matrix = variable.take_tag();
       if (!matrix || matrix->type != kMatrix)
         throw DataError(place + ": found no matrix in the compressed data");
       variable.take_matrix(matrix->size, "", 0);
+      left -= std::min(left, matrix->size);
     } else if (element->type == kMatrix) {
       MatVariable(part, place, swap, visitor, stop).take_matrix(element->size, "", 0);
     } else {
@@ -287,9 +289,11 @@ bool is_mat(const fs::path&, const std::string& head) {
   return end == std::string("\x00\x01IM", 4) || end == std::string("\x01\x00MI", 4);
 }
 
-std::unique_ptr<LogFile> open_mat(const fs::path& file, const LogOptions&) {
+std::unique_ptr<LogFile> open_mat(const fs::path& file, const LogOptions& options) {
   return open_arrays(file, "MAT v5", ArrayGrouping::Structs,
-                     [file](ArrayVisitor& visitor, const Stop& stop) { walk_mat(file, visitor, stop); });
+                     [file, most = options.max_bytes](ArrayVisitor& visitor, const Stop& stop) {
+                       walk_mat(file, most, visitor, stop);
+                     });
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "datasets/logs/tables/array_log.hpp"
-#include "datasets/logs/tables/byte_source.hpp"
+#include "datasets/logs/arrays/array_log.hpp"
+#include "datasets/logs/arrays/byte_source.hpp"
 
 namespace odobench {
 

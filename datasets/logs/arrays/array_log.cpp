@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/array_log.hpp"
+#include "datasets/logs/arrays/array_log.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include "base/files.hpp"
 #include "base/range.hpp"
 #include "base/text.hpp"
+#include "datasets/logs/arrays/array_catalogue.hpp"
 #include "datasets/logs/log_names.hpp"
 #include "datasets/logs/log_time.hpp"
-#include "datasets/logs/tables/array_catalogue.hpp"
 
 namespace odobench {
 namespace {

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/byte_source.hpp"
+#include "datasets/logs/arrays/byte_source.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/npz.hpp"
+#include "datasets/logs/arrays/npz.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -7,7 +7,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 namespace odobench {
 namespace {
@@ -47,7 +47,10 @@ class CheckedBytes : public ByteSource {
 // Walks over the members of a zip archive by its directory.
 class ZipFile {
  public:
-  explicit ZipFile(const fs::path& file) : name_(shown_path(file)), bytes_(file) { find_directory(); }
+  ZipFile(const fs::path& file, std::int64_t max_bytes)
+      : name_(shown_path(file)), bytes_(file), left_(static_cast<std::uint64_t>(max_bytes)) {
+    find_directory();
+  }
 
   void walk(ArrayVisitor& visitor, const Stop& stop) {
     std::uint64_t at = directory_;
@@ -138,6 +141,8 @@ class ZipFile {
           fmt::format("{}: compressed by method {}, expected none or deflate", place, member.method));
     if (member.size > kLargestArray)
       throw DataError(fmt::format("{}: claims {} bytes, more than {}", place, member.size, kLargestArray));
+    if (member.size > left_) throw DataError(name_ + ": decompresses to more than is allowed (--max-bytes)");
+    left_ -= member.size;
     const std::string local = take(member.offset, 30, "a member");
     if (local.compare(0, 4, "PK\x03\x04") != 0)
       throw DataError(fmt::format("{}: found no member at byte {}", place, member.offset));
@@ -147,7 +152,7 @@ class ZipFile {
     if (member.method == 0)
       walk_member(packed, array, place, member, visitor, stop);
     else {
-      InflatedBytes inflated(packed, true, kLargestArray, place);
+      InflatedBytes inflated(packed, true, member.size, place);
       walk_member(inflated, array, place, member, visitor, stop);
     }
   }
@@ -163,6 +168,7 @@ class ZipFile {
 
   std::string name_;
   FileBytes bytes_;
+  std::uint64_t left_;  // bytes that may be decompressed
   std::uint64_t directory_ = 0, count_ = 0;
 };
 
@@ -173,9 +179,11 @@ bool is_npz(const fs::path&, const std::string& head) {
   return name.size() > 4 && name.substr(name.size() - 4) == ".npy";
 }
 
-std::unique_ptr<LogFile> open_npz(const fs::path& file, const LogOptions&) {
+std::unique_ptr<LogFile> open_npz(const fs::path& file, const LogOptions& options) {
   return open_arrays(file, "NumPy npz", ArrayGrouping::TimePrefixes,
-                     [file](ArrayVisitor& visitor, const Stop& stop) { ZipFile(file).walk(visitor, stop); });
+                     [file, most = options.max_bytes](ArrayVisitor& visitor, const Stop& stop) {
+                       ZipFile(file, most).walk(visitor, stop);
+                     });
 }
 
 bool is_npy(const fs::path&, const std::string& head) {

@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/mat73_child.hpp"
+#include "datasets/logs/arrays/mat73_child.hpp"
 
 #include <unistd.h>
 

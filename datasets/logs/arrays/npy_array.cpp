@@ -1,4 +1,4 @@
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace odobench {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kLongestHeader = 1 << 16, kMostDimensions = 32;
+constexpr std::size_t kLongestNpyHeader = 1 << 16, kMostDimensions = 32;
 
 // What stands behind 'key': in the header's dict.
 std::string_view value_of(std::string_view header, std::string_view key) {
@@ -81,9 +81,9 @@ std::string read_header(ByteSource& bytes, const std::string& place) {
   const std::size_t size = length[0] | static_cast<std::size_t>(length[1]) << 8 |
                            static_cast<std::size_t>(length[2]) << 16 |
                            static_cast<std::size_t>(length[3]) << 24;
-  if (size > kLongestHeader)
+  if (size > kLongestNpyHeader)
     throw DataError(
-        fmt::format("{}: found a header of {} bytes, expected at most {}", place, size, kLongestHeader));
+        fmt::format("{}: found a header of {} bytes, expected at most {}", place, size, kLongestNpyHeader));
   std::string header(size, ' ');
   if (!bytes.read_exactly(header.data(), size)) throw cut();
   return header;

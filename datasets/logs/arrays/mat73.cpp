@@ -10,11 +10,11 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "datasets/logs/tables/array_log.hpp"
-#include "datasets/logs/tables/byte_source.hpp"
-#include "datasets/logs/tables/mat.hpp"
-#include "datasets/logs/tables/mat73_child.hpp"
-#include "datasets/logs/tables/npy_array.hpp"
+#include "datasets/logs/arrays/array_log.hpp"
+#include "datasets/logs/arrays/byte_source.hpp"
+#include "datasets/logs/arrays/mat.hpp"
+#include "datasets/logs/arrays/mat73_child.hpp"
+#include "datasets/logs/arrays/npy_array.hpp"
 
 namespace odobench {
 namespace {
