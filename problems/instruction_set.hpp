@@ -1,5 +1,6 @@
 // The vector instructions that the kernels of the cost evaluations come in
-// (problems/calibration/kernel/kernel.hpp, solvers/lattice/ternary_kernel.hpp), and which of them this processor has.
+// (problems/calibration/kernel/kernel.hpp, solvers/lattice/ternary_kernel.hpp), and which of them this
+// processor has.
 //
 // The last bits of a calibration's cost depend on it: other lane counts sum in another order, and the wide
 // ones use fused multiply-adds. So results repeat to the last bit for one kernel, and whoever runs something

@@ -1,5 +1,5 @@
-// `bench import LOG... --map`, `--propose`, `bench calibrate LOG...`, as a user sees them: the right robot out
-// of logs of every format, and one clear line for what is wrong.
+// `bench import LOG... --map`, `--propose`, `bench calibrate LOG...`, as a user sees them: the right robot
+// out of logs of every format, and one clear line for what is wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
