@@ -25,7 +25,7 @@ build=$root/build/fuzz
 ODOBENCH_EXTRA_PACKAGES='clang-19 libclang-rt-19-dev' CXX=clang++-19 "$root/scripts/setup.sh" fuzz fuzz_formats
 target=$build/tests/fuzz_formats
 if (($# == 0)); then
-  mapfile -t formats < <(sed -n 's/^      {"\([a-z_]*\)",.*/\1/p' "$root/tests/support/formats.cpp")
+  mapfile -t formats < <("$target" --formats)
   set -- "${formats[@]}"
 fi
 # Where allocations came from takes a fifth of the time and is needed only once there is a finding.

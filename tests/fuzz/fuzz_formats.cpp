@@ -37,8 +37,12 @@ bool asks_for_much(const std::string& bytes) {
 
 }  // namespace
 
-// Writes the examples of the format into a folder, the first corpus.
+// Prints the formats, or writes the examples of the format into a folder, the first corpus.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  if (*argc == 2 && std::string((*argv)[1]) == "--formats") {
+    for (const std::string& name : odobench::testing::format_names()) std::puts(name.c_str());
+    std::exit(0);
+  }
   if (*argc == 2 && std::string((*argv)[1]).rfind("--examples=", 0) == 0) {
     const std::filesystem::path folder = std::string((*argv)[1]).substr(11);
     std::filesystem::create_directories(folder);
@@ -61,7 +65,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& words : chosen_format().commands(bytes, folder)) {
     std::filesystem::remove_all(folder / "out");
     const odobench::testing::ProcessResult result = odobench::testing::bench_in_process(words);
-    const std::string complaint = odobench::testing::complaint_about(result, folder, bytes);
+    const std::string complaint =
+        odobench::testing::complaint_about(result, folder, bytes, chosen_format().binary);
     if (complaint.empty()) continue;
     std::fprintf(stderr, "%s\n%s\n", complaint.c_str(), result.err.c_str());
     std::abort();

@@ -80,7 +80,7 @@ TEST_P(Mutations, EndWithAResultOrOneClearLine) {
       fs::remove_all(folder / "out");
       const ProcessResult result = bench_in_process(words);
       refused += result.exit_code >= 2 ? 1 : 0;
-      const std::string complaint = complaint_about(result, folder, bytes);
+      const std::string complaint = complaint_about(result, folder, bytes, format.binary);
       if (complaint.empty()) continue;
       ++complaints;
       ADD_FAILURE() << complaint << "\n"

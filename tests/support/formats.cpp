@@ -15,6 +15,7 @@
 #include "tests/support/data/filter_run_files.hpp"
 #include "tests/support/data/synthetic_recording.hpp"
 #include "tests/support/in_process.hpp"
+#include "tests/support/log_formats.hpp"
 #include "tests/support/source_dir.hpp"
 
 namespace odobench::testing {
@@ -363,7 +364,11 @@ bool unprintable(const std::string& text) {
 }
 
 const std::vector<Format>& formats() {
-  static const std::vector<Format> list = make_formats();
+  static const std::vector<Format> list = [] {
+    std::vector<Format> all = make_formats();
+    for (Format& format : log_formats_read()) all.push_back(std::move(format));
+    return all;
+  }();
   return list;
 }
 
@@ -380,7 +385,7 @@ const Format& format_called(const std::string& name) {
 }
 
 std::string complaint_about(const ProcessResult& result, const TemporaryFolder& folder,
-                            const std::string& input) {
+                            const std::string& input, bool binary) {
   if (result.signal != 0) return "ended by signal " + std::to_string(result.signal);
   if (result.exit_code < 0 || result.exit_code > 3) return "exit code " + std::to_string(result.exit_code);
   std::size_t said = 0;
@@ -389,7 +394,7 @@ std::string complaint_about(const ProcessResult& result, const TemporaryFolder& 
   if (unprintable(result.out) || unprintable(result.err)) return "control characters or invalid UTF-8";
   if (result.err.size() > 20000) return "messages of " + std::to_string(result.err.size()) + " bytes";
   if (const std::string line = not_finite(result.out);
-      result.exit_code < 2 && !line.empty() && !speaks_of_infinity(input))
+      result.exit_code < 2 && !line.empty() && !binary && !speaks_of_infinity(input))
     return "nan or inf among the results: " + line;
   for (const std::string& name : files_below(folder / "out"))
     if (name.find(".tmp-") != std::string::npos) return "left " + name;

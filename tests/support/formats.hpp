@@ -17,6 +17,7 @@ struct Format {
   std::function<std::vector<std::string>()> examples;
   // Puts `bytes` into files of `folder`; the commands that read them. What they write goes to `folder`/out.
   std::function<std::vector<Words>(const std::string& bytes, const TemporaryFolder& folder)> commands;
+  bool binary = false;  // numbers stand in it as bytes: any of them may be a nan
 };
 const std::vector<Format>& formats();
 std::vector<std::string> format_names();
@@ -32,6 +33,6 @@ bool unprintable(const std::string& text);
 // nan or inf where there is no error and none in the input; temporary files left behind, or anything at all
 // after an error.
 std::string complaint_about(const ProcessResult& result, const TemporaryFolder& folder,
-                            const std::string& input);
+                            const std::string& input, bool binary = false);
 
 }  // namespace odobench::testing
