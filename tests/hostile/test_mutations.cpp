@@ -99,7 +99,7 @@ TEST_P(Mutations, ExamplesAreFine) {
     for (const Words& words : format.commands(example, folder)) {
       const ProcessResult result = bench_in_process(words);
       EXPECT_EQ(result.exit_code, 0) << ::testing::PrintToString(words) << result.err;
-      EXPECT_EQ(complaint_about(result, folder, example), "") << result.out;
+      EXPECT_EQ(complaint_about(result, folder, example, format.binary), "") << result.out;
     }
 }
 

@@ -51,7 +51,8 @@ const std::string kTableMap = std::string("{") + kRobot + R"(
 constexpr const char* kTable =
     "time [s];links [1/min];rechts [1/min];x [m];y "
     "[m];yaw\n0,01;60;-60;;;\n0,02;;;1;-0,5;0,1\n0,03;60,5;-6e1;;;\n"
-    "0,04;;;1,0;-0,5;0,11\n0,05;61;-60;;;\n0,06;;;1,0;-0,5;0,12\n0,3;61;-60;;;\n0,31;;;1,1;-0,5;0,12\n";
+    "0,04;;;1,0;-0,5;0,11\n0,05;61;-60;;;\n0,06;;;1,0;-0,5;0,12\n0,09;61;-60;;;\n0,1;;;1,1;-0,5;0,12\n0,13;6;"
+    "-6;;;\n0,15;;;1,1;-0,5;0,1\n";
 
 std::string lines_log() {
   std::string text;
@@ -116,7 +117,7 @@ std::vector<Words> read_log(const std::string& log, const std::string& name, con
   return {{"import", file, "--show"},
           {"import", file, "--propose"},
           {"import", file, "--map=" + folder.file("map.json", map),
-           "--out=" + (folder / "out/set.json").string(), "--keep-cut"}};
+           "--out=" + (folder / "out/set.json").string(), "--keep-cut", "--overwrite"}};
 }
 
 Format log_format(const std::string& name, std::function<Examples()> examples, const std::string& map) {
@@ -152,6 +153,8 @@ std::vector<Format> log_formats_read() {
       "db3", [] { return Examples{db3_log()}; }, kRosMap));
   all.push_back(log_format(
       "npz", [] { return Examples{npz_log()}; }, kArrayMap));
+  all.push_back(log_format(
+      "mat", [] { return Examples{mat_log()}; }, kArrayMap));
   all.push_back(log_format(
       "lines", [] { return Examples{lines_log()}; }, kLinesMap));
   all.push_back(log_format(

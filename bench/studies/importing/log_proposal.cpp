@@ -34,13 +34,23 @@ Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
+// A map is text: what it could not name is left out.
+std::vector<SurveyedSource> nameable(std::vector<SurveyedSource> sources) {
+  std::erase_if(sources, [](const SurveyedSource& s) {
+    return !is_valid_utf8(s.source.name) || !is_valid_utf8(s.files);
+  });
+  for (SurveyedSource& s : sources)
+    std::erase_if(s.source.fields, [](const LogField& f) { return !is_valid_utf8(f.path); });
+  return sources;
+}
+
 class Proposer {
  public:
   Proposer(const std::vector<std::filesystem::path>& logs, const LogOptions& options, const Stop& stop)
       : logs_(logs),
         options_(options),
         stop_(stop),
-        sources_(log_import::survey_logs(logs, options, stop)),
+        sources_(nameable(log_import::survey_logs(logs, options, stop))),
         roles_(find_roles(sources_)) {
     for (const auto* list : {&roles_.wheels, &roles_.steering, &roles_.reference, &roles_.gyro})
       for (const Role& role : *list) name_source(role.source);
