@@ -67,7 +67,8 @@ struct SensorStatistics {
   int dof = 0;
   std::int64_t used = 0, rejected = 0, late = 0, outside = 0;  // outside: of the recording's time
   double mean_nis = 0;                                         // of the used and the rejected ones
-  double log_likelihood = 0;  // of the used ones, sum of -(nis + log det S + dof log 2 pi) / 2
+  double mean_innovation = 0;  // YawRate: of the same, gyro minus wheels, rad/s
+  double log_likelihood = 0;   // of the used ones, sum of -(nis + log det S + dof log 2 pi) / 2
 };
 
 struct FusionResult {

@@ -320,6 +320,8 @@ class FusionEngine {
       if (e.late || e.dof == 0) continue;
       s.dof = e.dof;
       s.mean_nis += e.nis;
+      if (sensors_[e.sensor].kind == SensorKind::YawRate)
+        s.mean_innovation += e.whitened[0] * std::exp(0.5 * e.log_det);
       ++(e.accepted ? s.used : s.rejected);
       if (!e.accepted) continue;
       const double log_det = e.log_det + e.dof * kLogTwoPi;
@@ -328,8 +330,10 @@ class FusionEngine {
       for (int i = 0; i < e.dof; ++i) result_.whitened.push_back(e.whitened[i]);
       result_.log_dets.push_back(log_det);
     }
-    for (SensorStatistics& s : result_.sensors)
-      if (s.used + s.rejected > 0) s.mean_nis /= static_cast<double>(s.used + s.rejected);
+    for (SensorStatistics& s : result_.sensors) {
+      const auto judged = static_cast<double>(s.used + s.rejected);
+      if (judged > 0) s.mean_nis /= judged, s.mean_innovation /= judged;
+    }
   }
 
   const Recording& recording_;

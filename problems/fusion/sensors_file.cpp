@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <stdexcept>
 
+#include "base/angle.hpp"
 #include "base/json_node.hpp"
 #include "base/random.hpp"
 
@@ -66,11 +67,49 @@ void read_camera(const JsonNode& node, SyntheticSensor& s) {
   s.stream.sigma_position = number(filter.at("sigma_position"), kSigma);
 }
 
+// What measurements of a file are: columns and units, and what the filter believes.
+void read_measured(const JsonNode& node, SyntheticSensor& s) {
+  s.file = node.at("file").text();
+  if (s.file.find("{recording}") == std::string::npos)
+    node.at("file").fail("a name without {recording}", "a file per recording: \"gyro_{recording}.csv\"");
+  const bool gyro = s.stream.kind == SensorKind::YawRate, heading = s.stream.kind == SensorKind::Heading;
+  for (const char* what : {"time", "yaw_rate", "x", "y", "heading"}) s.columns[what] = what;
+  if (node.has("columns"))
+    for (const std::string& key : node.at("columns").keys()) {
+      if (!s.columns.contains(key))
+        node.at("columns").fail(fmt::format("\"{}\"", key), "time, yaw_rate, x, y or heading");
+      s.columns[key] = node.at("columns").at(key).text();
+    }
+  if (node.has("unit")) {
+    const std::string unit = node.at("unit").text();
+    if (unit != (gyro ? "rad/s" : "rad") && unit != (gyro ? "deg/s" : "deg"))
+      node.at("unit").fail('"' + unit + '"', gyro ? "rad/s or deg/s" : "rad or deg, of headings");
+    if (unit.starts_with("deg")) (gyro ? s.rate_scale : s.heading_scale) = kPi / 180;
+  }
+  const JsonNode filter = node.at("filter");
+  if (gyro) {
+    filter.allow_only({"sigma_yaw_rate"});
+    s.stream.sigma_rate = number(filter.at("sigma_yaw_rate"), kSigma);
+    s.stream.hold_s = 0.1;  // until the file says how often it measures
+    return;
+  }
+  filter.allow_only({"sigma_position", "sigma_heading"});
+  s.stream.sigma_heading = number(filter.at("sigma_heading"), kSigma);
+  if (!heading) s.stream.sigma_position = number(filter.at("sigma_position"), kSigma);
+}
+
 SyntheticSensor read_sensor(const JsonNode& node) {
-  node.allow_only({"name", "type", "rate_hz", "delay_s", "missing", "smooth_s", "errors", "filter"});
   SyntheticSensor s;
   s.stream.name = node.at("name").text();
   s.stream.kind = read_kind(node.at("type"));
+  if (node.has("file")) {
+    node.allow_only({"name", "type", "file", "columns", "unit", "delay_s", "filter"});
+    s.timing.delay_s = number_or(node, "delay_s", kTime, 0);
+    s.timing.rate_hz = 0;
+    read_measured(node, s);
+    return s;
+  }
+  node.allow_only({"name", "type", "rate_hz", "delay_s", "missing", "smooth_s", "errors", "filter"});
   s.timing.rate_hz = number(node.at("rate_hz"), kRate);
   s.timing.delay_s = number_or(node, "delay_s", kTime, 0);
   s.timing.missing = number_or(node, "missing", kShare, 0);
@@ -113,6 +152,7 @@ SensorsFile read_sensors(const std::filesystem::path& path) {
                    "gate_probability", "max_delay_s", "unscented"});
   SensorsFile file;
   file.name = path.stem().string();
+  file.folder = path.parent_path();
   file.description = root.text_or_empty("description");
   if (root.has("seed")) {
     const std::int64_t seed = root.at("seed").integer();
@@ -172,6 +212,7 @@ std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording&
   std::vector<SensorStream> streams;
   for (const SyntheticSensor& s : file.sensors) {
     streams.push_back(s.stream);
+    if (!s.file.empty()) continue;
     const std::uint64_t own = derive_seed(seed, {"sensor", recording.id, s.stream.name});
     streams.back().data = s.stream.kind == SensorKind::YawRate
                               ? synthetic_gyro(recording, s.gyro, s.timing, own)

@@ -2,12 +2,14 @@
 //   {"seed": 1, "wheels": {"sigma_velocity", "sigma_yaw_rate"}, "start": {"sigma_position", "sigma_heading"},
 //    "sensors": [{"name", "type": "pose|heading|relative_pose|yaw_rate", "rate_hz", "delay_s", "missing",
 //                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...],
+//                 or instead of rate_hz, missing and errors {"file": "gyro_{recording}.csv", "columns": {...}},
 //    "gyro_bias": {"initial", "walk"}, "odometry_scale": {...}, "gate_probability", "max_delay_s",
 //    "unscented": {"alpha", "beta", "kappa"}}
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +21,11 @@ namespace odobench {
 
 struct SyntheticSensor {
   SensorStream stream;  // what the filter believes; without data
+  // Measured, not synthetic: a table per recording, "{recording}" in its name standing for the id, relative to
+  // the sensors' file. Columns by what they are: time, yaw_rate, x, y, heading.
+  std::string file;
+  std::map<std::string, std::string> columns;
+  double rate_scale = 1, heading_scale = 1;  // to rad/s and rad
   StreamTiming timing;
   CameraErrors camera;
   GyroErrors gyro;
@@ -26,6 +33,7 @@ struct SyntheticSensor {
 
 struct SensorsFile {
   std::string name, description;
+  std::filesystem::path folder;  // of the file
   std::uint64_t seed = 1;
   std::vector<SyntheticSensor> sensors;
   FusionOptions options;  // filter kind and smoother are the command's business
@@ -43,7 +51,7 @@ inline constexpr double kSecondsPerMeasurement = 1e-6;
 // How many the rates over the recordings' durations give. Throws DataError when there are more than these.
 double require_measurements(const SensorsFile& file, std::span<const Recording> recordings);
 
-// The streams of a recording; same seed, file and recording id: same bits.
+// The streams of a recording, those of files without data; same seed, file and recording id: same bits.
 std::vector<SensorStream> make_streams(const SensorsFile& file, const Recording& recording,
                                        std::uint64_t seed);
 

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/fusion/measured_sensors.hpp"
 #include "bench/studies/run_tracks.hpp"
 #include "problems/kalman/consistency.hpp"
 #include "solvers/options.hpp"
@@ -108,7 +109,13 @@ void summarise_nees(const std::vector<Fused>& fused, FusionRow& row) {
   row.verdict = verdict(row.mean_nees, row.inside, band, components, count);
 }
 
-void summarise_sensors(const std::vector<Fused>& fused, FusionRow& row) {
+// The mean of so many differences of white noise that the filter believes in.
+double noise_of_mean(const SensorsFile& file, std::size_t sensor, double judged) {
+  const double rate = file.sensors[sensor].stream.sigma_rate;
+  return std::hypot(rate, file.options.sigma_yaw_rate) / std::sqrt(std::max(1.0, judged));
+}
+
+void summarise_sensors(const std::vector<Fused>& fused, const SensorsFile& file, FusionRow& row) {
   for (std::size_t s = 0; s < fused.front().sensors.size(); ++s) {
     FusionSensorRow out;
     out.name = fused.front().sensors[s].name;
@@ -122,7 +129,13 @@ void summarise_sensors(const std::vector<Fused>& fused, FusionRow& row) {
       out.dof = std::max(out.dof, one.dof);
       out.mean_nis += judged * one.mean_nis;
       total += judged;
+      if (file.sensors[s].stream.kind != SensorKind::YawRate) continue;
+      const double noise = noise_of_mean(file, s, judged), count = static_cast<double>(fused.size());
+      out.innovation_rms += one.mean_innovation * one.mean_innovation / count;
+      out.innovation_noise += noise * noise / count;
     }
+    out.innovation_rms = std::sqrt(out.innovation_rms);
+    out.innovation_noise = std::sqrt(out.innovation_noise);
     if (total > 0 && out.dof > 0) {
       out.mean_nis /= total;
       const ConsistencyBand band = consistency_band(out.dof, total);
@@ -140,6 +153,7 @@ std::string believed(const SyntheticSensor& s) {
 }
 
 std::string made_with(const SyntheticSensor& s) {
+  if (!s.file.empty()) return "measured: " + shown(s.file);
   if (s.stream.kind == SensorKind::YawRate)
     return fmt::format("bias {:g} rad/s, walk {:g} rad/s/√s, white {:g} rad/s", s.gyro.bias, s.gyro.bias_walk,
                        s.gyro.noise);
@@ -153,9 +167,16 @@ std::string made_with(const SyntheticSensor& s) {
 Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset) {
   Table table;
   table.id = "sensors";
-  table.title = fmt::format(
-      "SYNTHETIC SENSORS: camera and gyro are simulated from the motion capture of '{}' ({}, seed {})",
-      dataset, file.name, seed);
+  const auto synthetic = std::count_if(file.sensors.begin(), file.sensors.end(),
+                                       [](const SyntheticSensor& s) { return s.file.empty(); });
+  table.title =
+      synthetic == 0
+          ? fmt::format("Sensors: measured, read from files ({})", file.name)
+          : fmt::format("SYNTHETIC SENSORS: {} simulated from the motion capture of '{}' ({}, seed {})",
+                        static_cast<std::size_t>(synthetic) == file.sensors.size()
+                            ? "camera and gyro are"
+                            : fmt::format("{} of {} are", synthetic, file.sensors.size()),
+                        dataset, file.name, seed);
   for (const char* name :
        {"sensor", "type", "rate", "delay", "missing", "errors it is made with", "σ in the filter"}) {
     Column column;
@@ -166,10 +187,10 @@ Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::strin
   const char* kinds[] = {"pose", "heading", "relative pose", "yaw rate"};
   for (const SyntheticSensor& s : file.sensors)
     table.rows.push_back({text_cell(s.stream.name), text_cell(kinds[static_cast<int>(s.stream.kind)]),
-                          text_cell(fmt::format("{:g} Hz", s.timing.rate_hz)),
+                          text_cell(s.file.empty() ? fmt::format("{:g} Hz", s.timing.rate_hz) : "its own"),
                           text_cell(fmt::format("{:g} s", s.timing.delay_s)),
-                          text_cell(fmt::format("{:g} %", 100 * s.timing.missing)), text_cell(made_with(s)),
-                          text_cell(believed(s))});
+                          s.file.empty() ? text_cell(fmt::format("{:g} %", 100 * s.timing.missing)) : Cell{},
+                          text_cell(made_with(s)), text_cell(believed(s))});
   if (!file.description.empty()) table.notes.push_back(file.description);
   table.notes.push_back(fmt::format("Wheels in the filter: σ {:g} m/s and {:g} rad/s of a sample.",
                                     file.options.sigma_velocity, file.options.sigma_yaw_rate));
@@ -225,7 +246,7 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
   out.row.rmse_heading = std::sqrt(heading / samples);
   if (!filter.filtered) return out;
   summarise_nees(fused, out.row);
-  summarise_sensors(fused, out.row);
+  summarise_sensors(fused, sensors, out.row);
   return out;
 }
 
@@ -235,7 +256,13 @@ std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
   std::vector<std::vector<SensorStream>> streams(recordings.size());
   parallel_for(
       recordings.size(), thread_count(threads),
-      [&](std::size_t i) { streams[i] = make_streams(file, recordings[i], seed); }, stop);
+      [&](std::size_t i) {
+        streams[i] = make_streams(file, recordings[i], seed);
+        for (std::size_t s = 0; s < file.sensors.size(); ++s)
+          if (!file.sensors[s].file.empty())
+            read_measurements(file, file.sensors[s], recordings[i], streams[i][s], stop);
+      },
+      stop);
   return streams;
 }
 

@@ -6,6 +6,7 @@
 
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/fusion/fusion_remarks.hpp"
 #include "bench/studies/fusion/fusion_runs.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/run_tracks.hpp"
@@ -41,6 +42,12 @@ RunRecord common_record(const LoadedProblem& loaded, std::uint64_t seed, const T
   return record;
 }
 
+const FusionRow* row_of_wheels(const std::vector<FusionRow>& rows, const std::string& label) {
+  for (const FusionRow& row : rows)
+    if (!row.filtered && row.label == label) return &row;
+  return nullptr;
+}
+
 }  // namespace
 
 FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Stop& stop) {
@@ -69,6 +76,11 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
       FusedRow fused = fuse_all(recordings, set.values, filter, sensors, streams, study.threads, stop);
       fused.row.label = filter.filtered ? set.label + "+" + filter.name : set.label;
       RunRecord record = common;
+      for (const std::string& text :
+           fusion_remarks(sensors, fused.row, row_of_wheels(runs.rows, set.label))) {
+        record.notes.push_back(fused.row.label + ": " + text);
+        watcher.warn(record.notes.back());
+      }
       put_fusion_row(fused.row, record);
       record.errors = std::move(fused.errors);
       record.time_utc = utc_now();

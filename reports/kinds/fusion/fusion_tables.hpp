@@ -16,6 +16,9 @@ struct FusionSensorRow {
   double mean_nis = 0;  // over the degrees of freedom `dof`: expected value
   int dof = 0;
   double lower = 0, upper = 0;  // band of the mean
+  // Of a gyro, rad/s: root mean square over the recordings of its mean difference to the wheels, and what of
+  // that white noise explains. Not in records.
+  double innovation_rms = 0, innovation_noise = 0;
 };
 
 // One parameter set with one filter, over all recordings.
