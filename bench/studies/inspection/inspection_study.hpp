@@ -1,0 +1,46 @@
+// Data sets looked at before anything is fitted to them: the study behind `bench inspect`, and what other
+// verbs say of the sets that they take.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/watcher.hpp"
+#include "datasets/dataset.hpp"
+#include "problems/inspection/finding.hpp"
+#include "reports/render/table.hpp"
+
+namespace odobench {
+
+struct InspectedSet {
+  Dataset dataset;
+  std::vector<inspection::Finding> findings;
+};
+
+// `data`: path of set.json, "" for the demo set. Throws DataError on a bad set.
+InspectedSet inspect_set(const std::string& data);
+
+// "findings": severity, kind, message and remedy of each; with `all` recording, wheel and samples in columns
+// of their own, and a table "figures" of finding (from 1), name and value, for programs.
+std::vector<Table> findings_tables(const std::string& dataset,
+                                   const std::vector<inspection::Finding>& findings, bool all);
+
+// "error: wheel_reversed: ...", a line per finding.
+std::string finding_text(const inspection::Finding& finding);
+
+// Kinds that --accept names; "all" is every one. Throws std::invalid_argument for an unknown one.
+struct AcceptedKinds {
+  bool all = false;
+  std::vector<std::string> names;
+  bool holds(const std::string& kind) const;
+};
+AcceptedKinds accepted_kinds(const std::vector<std::string>& lists);
+
+// Warnings and errors about the recordings of a calibration: told to the watcher (six lines at most) and
+// returned as notes for records. Notes are not worth a line here, nor is the layout, about which loading has a
+// remark. With `calibrates` an error that is not accepted throws DataError, which names it and the remedy.
+std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
+                                      bool calibrates, Watcher& watcher);
+
+}  // namespace odobench
