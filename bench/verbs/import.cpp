@@ -13,8 +13,10 @@
 #include "bench/catalogue/importers.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/table_output.hpp"
+#include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
 #include "bench/options/written_files.hpp"
+#include "bench/studies/inspection/inspection_study.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
 
 namespace odobench {
@@ -130,6 +132,8 @@ ExitCode import_command(const ImportOptions& options, const Catalogue& catalogue
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
   save_announced(dataset, options.out, options.overwrite, options.json);
+  TerminalWatcher watcher(options.quiet);
+  told_findings(inspect_recordings(dataset.robot, dataset.recordings), options.out, watcher);
   return ExitCode::Success;
 }
 

@@ -69,6 +69,7 @@ Drive drive_view(const RobotView& robot, const Recording& recording) {
   Drive d;
   d.recording = &recording;
   const auto n = static_cast<Index>(recording.size());
+  if (n < 2) return d;
   d.t.resize(n);
   for (Index k = 0; k < n; ++k)
     d.t[k] =

@@ -161,10 +161,15 @@ double spread_of(const Vector& angles, double& largest) {
   return high - low;
 }
 
+// Without the sign of a zero.
+double tenths(double value) {
+  return std::round(10 * value) / 10 + 0.0;
+}
+
 std::string in_degrees(const Vector& angles, double factor) {
   std::vector<std::string> text;
   for (const double a : angles)
-    if (std::isfinite(a)) text.push_back(fmt::format("{:+.1f}", factor * a / kDegree));
+    if (std::isfinite(a)) text.push_back(fmt::format("{:+.1f}", tenths(factor * a / kDegree)));
   return fmt::format("{}", fmt::join(text, ", "));
 }
 
@@ -230,10 +235,10 @@ void check_tracked_point(const RobotView& robot, std::vector<Drive>& drives, std
   if (samples < kFewestSamples || !(ww > 0)) return;
   const double x = wx / ww, y = wy / ww, removed = (wx * wx + wy * wy) / ww;
   if (!(std::hypot(x, y) > kLever) || !(removed > 0.5 * before)) return;
-  found.push_back(
-      finding_of("tracked_point",
-                 fmt::format("the tracked point looks displaced by ({:.1f}, {:.1f}) cm", 100 * x, 100 * y),
-                 {{"x", x}, {"y", y}}));
+  found.push_back(finding_of("tracked_point",
+                             fmt::format("the tracked point looks displaced by ({:.1f}, {:.1f}) cm",
+                                         tenths(100 * x), tenths(100 * y)),
+                             {{"x", x}, {"y", y}}));
   // Where the box of the wheels' places is as wide, the calibration finds it.
   double allowed = 0;
   for (const BoundParameter& p : robot.robot->table.parameters)

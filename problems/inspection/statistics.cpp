@@ -41,6 +41,7 @@ Vector LocalLine::slope(const ConstVectorRef& f) const {
 }
 
 double percentile(std::vector<double>& values, double share) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
   if (values.empty()) return 0;
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + at, values.end());

@@ -28,7 +28,8 @@ class LocalLine {
 };
 
 // The value below which `share` (0 to 1) of the entries lie: of the sorted ones that at index
-// floor(share (n - 1) + 0.5). 0 of none. Entries are reordered.
+// floor(share (n - 1) + 0.5). 0 of none. Not-a-numbers are
+// left out. Entries are reordered.
 double percentile(std::vector<double>& values, double share);
 double median(std::vector<double>& values);
 

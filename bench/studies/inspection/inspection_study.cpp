@@ -50,6 +50,17 @@ InspectedSet inspect_set(const std::string& data) {
   return inspected;
 }
 
+std::vector<Finding> inspect_recordings(const Robot& robot, std::span<const Recording> recordings,
+                                        int threads) {
+  try {
+    return inspection::inspect(robot, recordings, threads);
+  } catch (const std::runtime_error&) {
+    return {};
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
 std::vector<Table> findings_tables(const std::string& dataset, const std::vector<Finding>& findings,
                                    bool all) {
   Table table{"findings",
@@ -79,10 +90,6 @@ std::vector<Table> findings_tables(const std::string& dataset, const std::vector
   return {table, figures};
 }
 
-std::string finding_text(const Finding& f) {
-  return fmt::format("{}: {}: {}", name_of(f.severity), f.kind, f.message);
-}
-
 bool AcceptedKinds::holds(const std::string& kind) const {
   return all || std::find(names.begin(), names.end(), kind) != names.end();
 }
@@ -103,23 +110,29 @@ AcceptedKinds accepted_kinds(const std::vector<std::string>& lists) {
   return accepted;
 }
 
-std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
-                                      bool calibrates, Watcher& watcher) {
-  if (!loaded.calibration || !loaded.dataset) return {};
+std::vector<std::string> told_findings(const std::vector<Finding>& findings, const std::string& place,
+                                       Watcher& watcher) {
   std::vector<std::string> notes;
-  for (const Finding& f : inspection::inspect(loaded.dataset->robot, loaded.calibration->recordings(), 0)) {
-    if (f.severity == Severity::Note || f.kind == "layout_asymmetric") continue;
+  for (const Finding& f : findings)
+    if (f.severity != Severity::Note) notes.push_back(fmt::format("{}: {}", f.kind, f.message));
+  for (std::size_t i = 0; i < notes.size() && i < kMostLines; ++i) watcher.warn(notes[i]);
+  if (notes.size() > kMostLines)
+    watcher.warn(fmt::format("and {} more: bench inspect {}", notes.size() - kMostLines, place));
+  return notes;
+}
+
+std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
+                                      bool calibrates, int threads, Watcher& watcher) {
+  if (!loaded.calibration || !loaded.dataset) return {};
+  std::vector<Finding> findings =
+      inspect_recordings(loaded.dataset->robot, loaded.calibration->recordings(), threads);
+  std::erase_if(findings, [](const Finding& f) { return f.kind == "layout_asymmetric"; });
+  for (const Finding& f : findings)
     if (calibrates && f.severity == Severity::Error && !accepted.holds(f.kind))
       throw DataError(fmt::format("{}: {}: {}; {}{}, or calibrate as it is with --accept={}",
                                   loaded.dataset_path, f.kind, f.message, f.fix(),
                                   f.mendable ? " (bench inspect --fix does it)" : "", f.kind));
-    notes.push_back(finding_text(f));
-  }
-  for (std::size_t i = 0; i < notes.size() && i < kMostLines; ++i) watcher.warn(notes[i]);
-  if (notes.size() > kMostLines)
-    watcher.warn(
-        fmt::format("and {} more: bench inspect {}", notes.size() - kMostLines, loaded.dataset_path));
-  return notes;
+  return told_findings(findings, loaded.dataset_path, watcher);
 }
 
 }  // namespace odobench

@@ -2,6 +2,7 @@
 // verbs say of the sets that they take.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,15 @@ struct InspectedSet {
 // `data`: path of set.json, "" for the demo set. Throws DataError on a bad set.
 InspectedSet inspect_set(const std::string& data);
 
+// Of recordings that are not yet calibrated; nothing where the robot is none or its wheels do not tell the
+// twist, which calibrations refuse. `threads` as of inspection::inspect().
+std::vector<inspection::Finding> inspect_recordings(const Robot& robot, std::span<const Recording> recordings,
+                                                    int threads = 0);
+
 // "findings": severity, kind, message and remedy of each; with `all` recording, wheel and samples in columns
 // of their own, and a table "figures" of finding (from 1), name and value, for programs.
 std::vector<Table> findings_tables(const std::string& dataset,
                                    const std::vector<inspection::Finding>& findings, bool all);
-
-// "error: wheel_reversed: ...", a line per finding.
-std::string finding_text(const inspection::Finding& finding);
 
 // Kinds that --accept names; "all" is every one. Throws std::invalid_argument for an unknown one.
 struct AcceptedKinds {
@@ -37,10 +40,15 @@ struct AcceptedKinds {
 };
 AcceptedKinds accepted_kinds(const std::vector<std::string>& lists);
 
+// Warnings and errors as sentences "KIND: ...", told to the watcher, six at most. `place`: where to look for
+// the others.
+std::vector<std::string> told_findings(const std::vector<inspection::Finding>& findings,
+                                       const std::string& place, Watcher& watcher);
+
 // Warnings and errors about the recordings of a calibration: told to the watcher (six lines at most) and
 // returned as notes for records. Notes are not worth a line here, nor is the layout, about which loading has a
 // remark. With `calibrates` an error that is not accepted throws DataError, which names it and the remedy.
 std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
-                                      bool calibrates, Watcher& watcher);
+                                      bool calibrates, int threads, Watcher& watcher);
 
 }  // namespace odobench
