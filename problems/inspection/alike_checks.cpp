@@ -41,7 +41,8 @@ bool repeats(const RobotView& robot, const Drive& d, std::size_t wheel, const St
     value = v;
     most = std::max(most, equal);
   }
-  return static_cast<double>(most) >= 0.8 * static_cast<double>(run.size());
+  // The filter makes a stretch longer by up to half a second.
+  return static_cast<double>(most) >= 0.5 * static_cast<double>(run.size());
 }
 
 // Stretches where the wheel is off by more than its own scatter and than the others.

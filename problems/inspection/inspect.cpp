@@ -98,17 +98,21 @@ std::vector<Finding> inspect(const Robot& own, std::span<const Recording> record
     append(found, check_starts(robot, rest));
   }
   if (dense.empty()) return found;
+  const std::size_t of_recordings = found.size();
   append(found, check_hypotheses(robot, dense));
-  append(found, check_starts(robot, dense));
   parallel_for(dense.size(), threads, [&](std::size_t i) {
     update_twist(robot, dense[i]);
     update_sums(robot, dense[i]);
   });
   append(found, check_factors(robot, dense));
+  append(found, check_starts(robot, dense));
   const bool rotation = has(found, "rotation_factor");
   append(found, check_lag(robot, dense));
   append(found, check_frames(robot, dense));
   append(found, check_recordings_alike(robot, dense, rotation));
+  // Where nothing fits, what was seen on the way is no explanation.
+  if (has(found, "not_together"))
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(of_recordings), found.end() - 1);
   return found;
 }
 

@@ -1,7 +1,7 @@
 // Looks at recordings before anything is fitted to them.
 //
-// u_i is the velocity of wheel i by the reference, m_i by the wheel itself, both through one filter (the slope
-// of a local line, statistics.hpp), k_i the slope of u_i over m_i and E what is left of the squares
+// u_i is the velocity of wheel i by the reference, m_i by the wheel itself, both through one filter (the
+// slope of a local line, statistics.hpp), k_i the slope of u_i over m_i and E what is left of the squares
 // (drive_view.hpp). From these: units, signs, exchanged columns, lags, frames, slip. What is recognised is
 // corrected in a copy before the next check, so that one fault does not hide the next. docs/inspect.md
 // describes every kind.

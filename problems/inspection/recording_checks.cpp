@@ -196,8 +196,8 @@ std::vector<Index> pose_outliers(const Vector& v, double floor) {
   if (3 * steps.maxCoeff() <= floor) return {};  // no sample can be further from its median
   const Vector e = off_median(v);
   std::vector<double> moved(steps.data(), steps.data() + steps.size()), off;
-  for (const double one : e)
-    if (one > 0) off.push_back(one);
+  for (Index k = 3; k + 3 < n; ++k)  // windows that are whole
+    if (e[k] > 0) off.push_back(e[k]);
   const double limit = std::max({floor, 10 * kNormal * median(off), 6 * percentile(moved, 0.9)});
   std::vector<Index> found;
   for (Index k = 0; k < n; ++k)

@@ -32,9 +32,10 @@ Motion motion_of(const RobotView& robot, const Drive& d, Index k) {
 }
 
 struct TwistSums {
-  double reference = 0, wheels = 0;  // |F_xy|, |Wt_xy| where it drives straight
-  Complex across = 0;                // F_xy conj(Wt_xy) there
-  double both = 0, own = 0;          // F_w Wt_w, Wt_w^2 where it turns
+  double reference = 0, wheels = 0;            // |F_xy|, |Wt_xy| where it drives straight
+  Complex across = 0;                          // F_xy conj(Wt_xy) there
+  double both = 0, own = 0;                    // F_w Wt_w, Wt_w^2 where it turns
+  double any_both = 0, any_own = 0, path = 0;  // the same wherever it moves, and |Wt_xy|^2
   Index straight = 0, turning = 0;
 };
 
@@ -43,6 +44,11 @@ TwistSums twist_sums(const RobotView& robot, const std::vector<Drive>& drives) {
   for (const Drive& d : drives)
     for (Index k = 0; k < d.samples(); ++k) {
       const Motion motion = motion_of(robot, d, k);
+      if (d.used[static_cast<std::size_t>(k)] != 0) {
+        sums.any_both += d.w[k] * d.twist(k, 2);
+        sums.any_own += d.twist(k, 2) * d.twist(k, 2);
+        sums.path += d.twist(k, 0) * d.twist(k, 0) + d.twist(k, 1) * d.twist(k, 1);
+      }
       if (motion == Motion::Straight) {
         const Complex f(d.fx[k], d.fy[k]), wheels(d.twist(k, 0), d.twist(k, 1));
         sums.reference += std::abs(f);
@@ -112,6 +118,35 @@ void correct_factor(const RobotView& robot, std::vector<Drive>& drives, double k
     update_twist(robot, d);
   }
   for (Drive& d : drives) update_sums(robot, d);
+}
+
+// 1000 or 100 where turns fit and distances are as many times too long, else 1: lines may outweigh turns so
+// far that the misfit does not show it.
+double position_unit(const RobotView& robot, const TwistSums& sums, double kv) {
+  constexpr double kTurns = 1e-3;  // of the squares
+  if (!(robot.distance * robot.distance * sums.any_own > kTurns * sums.path)) return 1;
+  if (!(std::abs(std::log(std::abs(sums.any_both / sums.any_own))) < kNamed)) return 1;
+  for (const double unit : {1000.0, 100.0})
+    if (std::abs(std::log(kv / unit)) < kNamed) return unit;
+  return 1;
+}
+
+Finding position_finding(double unit, double kv) {
+  return finding_of(
+      "position_unit",
+      fmt::format("x and y look like {} (factor {:.0f}): distances are {:.3g} times as long as the wheels "
+                  "say while turns fit",
+                  unit == 1000 ? "millimetres" : "centimetres", unit, kv),
+      {{"factor", unit}});
+}
+
+void correct_positions(const RobotView& robot, std::vector<Drive>& drives, double unit) {
+  for (Drive& d : drives) {
+    d.x /= unit;
+    d.y /= unit;
+    update_reference(d);
+    update_sums(robot, d);
+  }
 }
 
 // Parameters that may be as far off as this do not make a finding.
@@ -284,6 +319,11 @@ std::vector<Finding> check_factors(const RobotView& robot, std::vector<Drive>& d
   const double kw = turning ? sums.both / sums.own : 1,
                kv = straight ? sums.reference / sums.wheels : std::abs(kw);
   if (!(kv > 0)) return found;
+  if (const double unit = position_unit(robot, sums, kv); unit > 1) {
+    found.push_back(position_finding(unit, kv));
+    correct_positions(robot, drives, unit);
+    return found;
+  }
   if (std::abs(std::log(kv)) > std::log(kFactor)) {
     const bool stamps = drives.front().step < 0.002 && std::abs(std::log(kv / 1000)) < kNamed;
     found.push_back(factor_finding(kv, stamps));

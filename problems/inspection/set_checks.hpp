@@ -12,7 +12,7 @@ namespace odobench::inspection {
 std::vector<Finding> check_starts(const RobotView& robot, const std::vector<Drive>& drives);
 
 // common_factor or time_unit, corrected in `drives`, and rotation_factor. Over the used samples
-//     k_v = sum |F_xy| / sum |Wt_xy|        where |Wt_xy| > 3 rho |Wt_w|   (k_w where there is nothing straight)
+//     k_v = sum |F_xy| / sum |Wt_xy|        where |Wt_xy| > 3 rho |Wt_w|   (k_w where nothing is straight)
 //     k_w = sum F_w Wt_w / sum Wt_w^2       where rho |Wt_w| > 0.8 |Wt_xy|
 // |ln k_v| > ln 1.12 is a common factor, named where a usual one is within 15 %; |ln (k_w / k_v)| > ln 1.12
 // one of rotations.

@@ -176,10 +176,14 @@ TEST(CliInspect, AtMostSixLinesAndHowToSeeTheOthers) {
 
 TEST(CliInspect, ABadFitIsSaidToBeOne) {
   const TemporaryFolder folder;
-  const std::string data = "--data=" + faulty(folder, "one_wheel_of_one_drive");
+  Dataset d = testing::clean_set("4wis4wid", 5);
+  Reference& reference = d.recordings[0].reference;
+  for (std::size_t k = 0; k < reference.x.size(); ++k)
+    reference.y[k] += 2 * static_cast<double>(k) / static_cast<double>(reference.x.size());
+  save_dataset(d, folder / "set.json");
+  const std::string data = "--data=" + (folder / "set.json").string();
   const ProcessResult result = run_bench({"--solver=lm", data, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Dataset d = load_dataset(folder / "set.json");
   EXPECT_THAT(table(result, "parameters").at("notes").dump(),
               HasSubstr("the drive " + d.recordings[0].id + " makes "));
   const auto fit = table(result, "fit");

@@ -3,9 +3,12 @@
 //
 // usage: inspection_power [SETS]
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
+#include <string>
 
 #include "problems/inspection/inspect.hpp"
 #include "tests/support/faulty_sets.hpp"
@@ -26,15 +29,19 @@ int main(int argc, char** argv) {
   for (const testing::Fault& fault : testing::faults())
     for (const double size : fault.sizes) {
       int named = 0, others = 0;
+      std::set<std::string> which;
       for (Dataset d : clean) {
         fault.inject(d, size);
         const auto found = inspection::inspect(d.robot, d.recordings);
         const auto is_it = [&](const inspection::Finding& f) { return f.kind == fault.kind; };
         if (std::any_of(found.begin(), found.end(), is_it)) ++named;
         if (!std::all_of(found.begin(), found.end(), is_it)) ++others;
+        for (const inspection::Finding& f : found)
+          if (!is_it(f)) which.insert(f.kind);
       }
-      fmt::print("| {} | {} | {:.4g} {} | {:.2f} | {:.2f} |\n", fault.name, fault.kind, size, fault.unit,
-                 static_cast<double>(named) / sets, static_cast<double>(others) / sets);
+      fmt::print("| {} | {} | {:.4g} {} | {:.2f} | {:.2f} {} |\n", fault.name, fault.kind, size, fault.unit,
+                 static_cast<double>(named) / sets, static_cast<double>(others) / sets,
+                 fmt::join(which, " "));
     }
   return 0;
 }

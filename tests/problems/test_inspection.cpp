@@ -102,8 +102,9 @@ TEST(Inspection, OutliersAndSpikesAreFewAndFarOut) {
   Vector line = Vector::LinSpaced(200, 0, 1);
   EXPECT_THAT(inspection::pose_outliers(line, 0.02), ::testing::IsEmpty());
   line[100] += 0.021;
-  EXPECT_THAT(inspection::pose_outliers(line, 0.02), ::testing::IsEmpty());  // below 6 steps of 5 mm
-  line[100] += 0.03;
+  EXPECT_THAT(inspection::pose_outliers(line, 0.02),
+              ::testing::IsEmpty());  // below what the neighbours are off
+  line[100] += 0.07;
   EXPECT_THAT(inspection::pose_outliers(line, 0.02), ::testing::ElementsAre(100));
   for (Eigen::Index k = 20; k < 180; k += 20) line[k] += 0.5;  // too many for outliers
   EXPECT_THAT(inspection::pose_outliers(line, 0.02), ::testing::IsEmpty());

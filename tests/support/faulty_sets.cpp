@@ -101,6 +101,24 @@ void cut_out(Dataset& d, double seconds) {
   for (Values* v : {&r.reference.x, &r.reference.y, &r.reference.theta}) erase(*v);
 }
 
+// Every drive gets the reference of another trajectory, stretched to its length.
+void exchange_references(Dataset& d) {
+  std::vector<Reference> all;
+  for (const Recording& r : d.recordings) all.push_back(r.reference);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Recording& r = d.recordings[i];
+    std::size_t other = (i + 1) % all.size();
+    while (d.recordings[other].trajectory == r.trajectory) other = (other + 1) % all.size();
+    const std::size_t n = all[other].x.size();
+    for (std::size_t k = 0; k < r.size(); ++k) {
+      const std::size_t at = k * (n - 1) / (r.size() - 1);
+      r.reference.x[k] = all[other].x[at];
+      r.reference.y[k] = all[other].y[at];
+      r.reference.theta[k] = all[other].theta[at];
+    }
+  }
+}
+
 // Nominal values of the parameters whose name begins with the letter, and their boxes.
 void scale_nominal(Dataset& d, char letter, double factor) {
   std::vector<RobotParameter> parameters = d.robot.parameters;
@@ -224,7 +242,7 @@ std::vector<Fault> column_faults() {
        true},
       {"steering_zero",
        "steering_zero",
-       {0.5 * kDegree, 0.8 * kDegree, kDegree, 1.2 * kDegree, 1.5 * kDegree},
+       {0.5 * kDegree, kDegree, 1.5 * kDegree, 2 * kDegree, 3 * kDegree},
        "rad",
        [](Dataset& d, double size) {
          for (Recording& r : d.recordings)
@@ -246,7 +264,7 @@ std::vector<Fault> frame_faults() {
        true},
       {"heading_turned",
        "heading_turned",
-       {0.8 * kDegree, kDegree, 1.2 * kDegree, 1.5 * kDegree},
+       {kDegree, 1.5 * kDegree, 2 * kDegree, 3 * kDegree, 4 * kDegree},
        "rad",
        [](Dataset& d, double size) {
          for_poses(d, [size](double&, double&, double& theta) { theta += size; });
@@ -325,16 +343,7 @@ std::vector<Fault> sample_faults() {
        {1.1, 1.2, 1.3, 1.5},
        "times",
        [](Dataset& d, double size) { scale(wheel(d.recordings[0], 1), size); }},
-      {"shuffled",
-       "not_together",
-       {1},
-       "",
-       [](Dataset& d, double) {
-         for (Recording& r : d.recordings) {
-           std::reverse(r.reference.x.begin(), r.reference.x.end());
-           std::swap(r.reference.x, r.reference.theta);
-         }
-       }},
+      {"exchanged_drives", "not_together", {1}, "", [](Dataset& d, double) { exchange_references(d); }},
       {"never_moved",
        "never_moved",
        {1},

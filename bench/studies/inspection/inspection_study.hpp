@@ -45,9 +45,10 @@ AcceptedKinds accepted_kinds(const std::vector<std::string>& lists);
 std::vector<std::string> told_findings(const std::vector<inspection::Finding>& findings,
                                        const std::string& place, Watcher& watcher);
 
-// Warnings and errors about the recordings of a calibration: told to the watcher (six lines at most) and
-// returned as notes for records. Notes are not worth a line here, nor is the layout, about which loading has a
-// remark. With `calibrates` an error that is not accepted throws DataError, which names it and the remedy.
+// Warnings and errors about the recordings of a calibration: told to the watcher (six lines at most),
+// returned as notes for records. Notes are not worth a line here, nor is the layout, about which loading
+// has a remark. With `calibrates` an error that is not accepted throws DataError, which names it and the
+// remedy.
 std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
                                       bool calibrates, int threads, Watcher& watcher);
 
