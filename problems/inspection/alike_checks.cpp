@@ -30,19 +30,26 @@ Matrix residuals_of(const RobotView& robot, const Drive& d, const Vector& slope)
   return out;
 }
 
-// Whether the wheel's signal says one value in the stretch.
+// Whether the wheel's signal says one value in half of the stretch at least (the filter makes stretches longer),
+// while the velocity by the reference changes by more than what makes a stretch.
 bool repeats(const RobotView& robot, const Drive& d, std::size_t wheel, const Stretch& run) {
-  Index equal = 0, most = 0;
-  double value = 0;
-  const Index column = robot.wheels[wheel].drives.front().first;
-  for (Index k = run.first; k <= std::min(run.last, d.motion.rows() - 1); ++k) {
-    const double v = d.motion(k, column) / d.seconds(k);
-    equal = k > run.first && std::abs(v - value) <= 1e-9 * std::abs(value) ? equal + 1 : 1;
-    value = v;
-    most = std::max(most, equal);
+  const Index column = robot.wheels[wheel].drives.front().first,
+              last = std::min(run.last, d.motion.rows() - 1);
+  const auto equal = [&](Index k) {
+    const double a = d.motion(k - 1, column) / d.seconds(k - 1), b = d.motion(k, column) / d.seconds(k);
+    return std::abs(a - b) <= 1e-9 * std::abs(b);
+  };
+  Stretch longest{run.first, run.first};
+  for (Index k = run.first; k <= last;) {
+    Stretch one{k, k};
+    while (one.last < last && equal(one.last + 1)) ++one.last;
+    if (one.size() > longest.size()) longest = one;
+    k = one.last + 1;
   }
-  // The filter makes a stretch longer by up to half a second.
-  return static_cast<double>(most) >= 0.5 * static_cast<double>(run.size());
+  if (2 * longest.size() < run.size()) return false;
+  while (longest.first > 0 && equal(longest.first)) --longest.first;
+  const Vector along = velocity_of(robot, d, wheel).along.segment(longest.first, longest.size());
+  return along.maxCoeff() - along.minCoeff() > kOfLevel * d.level;
 }
 
 // Stretches where the wheel is off by more than its own scatter and than the others.

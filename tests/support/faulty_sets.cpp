@@ -78,12 +78,13 @@ void slip(Dataset& d, double factor) {
   for (std::size_t k = middle(r); k < middle(r) + 20; ++k) wheel(r, 1)[k] *= factor;
 }
 
-// What the wheel said when it began to move, until half a second from the end of the drive.
+// What the wheel said before its speed changed by more than half.
 void repeat_speed(Dataset& d, double seconds) {
-  Recording& r = d.recordings[0];
+  Values& v = wheel(d.recordings[0], 1);
   const auto count = static_cast<std::size_t>(std::lround(seconds * 20));
-  for (std::size_t k = middle(r); k < middle(r) + count; ++k)
-    wheel(r, 1)[k] = 0.3 * wheel(r, 1)[middle(r) - 1];
+  std::size_t first = 20;
+  while (first + count + 20 < v.size() && std::abs(v[first + 5] - v[first]) < 0.5 * usual(v)) ++first;
+  for (std::size_t k = first; k < first + count; ++k) v[k] = v[first];
 }
 
 void exchange(Recording& r, int i, int j) {
@@ -337,7 +338,7 @@ std::vector<Fault> sample_faults() {
        },
        true},
       {"slip", "wheel_slip", {1.2, 1.3, 1.4, 1.6}, "times", slip, false, 1},
-      {"repeats", "speeds_repeat", {0.3, 0.5, 1}, "s", repeat_speed, false, 1},
+      {"repeats", "speeds_repeat", {0.5, 0.75, 1, 1.5}, "s", repeat_speed, false, 1},
       {"one_wheel_of_one_drive",
        "recording_unlike",
        {1.1, 1.2, 1.3, 1.5},
