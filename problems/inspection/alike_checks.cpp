@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "problems/inspection/hypotheses.hpp"
 #include "problems/inspection/set_checks.hpp"
 
@@ -30,8 +31,8 @@ Matrix residuals_of(const RobotView& robot, const Drive& d, const Vector& slope)
   return out;
 }
 
-// Whether the wheel's signal says one value in half of the stretch at least (the filter makes stretches longer),
-// while the velocity by the reference changes by more than what makes a stretch.
+// Whether the wheel's signal says one value in half of the stretch at least (the filter makes stretches
+// longer), while the velocity by the reference changes by more than what makes a stretch.
 bool repeats(const RobotView& robot, const Drive& d, std::size_t wheel, const Stretch& run) {
   const Index column = robot.wheels[wheel].drives.front().first,
               last = std::min(run.last, d.motion.rows() - 1);
@@ -131,14 +132,12 @@ void check_silent(const RobotView& robot, const Sums& sums, std::vector<Finding>
 }  // namespace
 
 std::vector<Finding> check_recordings_alike(const RobotView& robot, std::vector<Drive>& drives,
-                                            bool rotation_is_off) {
+                                            bool rotation_is_off, int threads) {
   std::vector<Finding> found;
-  std::vector<Sums> each;
+  std::vector<Sums> each(drives.size());
   Sums all(robot.wheels.size());
-  for (Drive& d : drives) {
-    each.push_back(update_sums(robot, d));
-    all += each.back();
-  }
+  parallel_for(drives.size(), threads, [&](std::size_t i) { each[i] = update_sums(robot, drives[i]); });
+  for (const Sums& one : each) all += one;
   check_silent(robot, all, found);
   const SlopeFit fit = slope_fit(robot, all);
   std::vector<double> misfits;
@@ -167,7 +166,10 @@ std::vector<Finding> check_recordings_alike(const RobotView& robot, std::vector<
         {{"disagreement", std::sqrt(misfits[i])}, {"others", std::sqrt(std::max(0.0, usual))}}));
     found.back().recording = drives[i].id();
   }
-  for (const Drive& d : drives) check_slip(robot, d, fit.slope, found);
+  std::vector<std::vector<Finding>> slips(drives.size());
+  parallel_for(drives.size(), threads,
+               [&](std::size_t i) { check_slip(robot, drives[i], fit.slope, slips[i]); });
+  for (const std::vector<Finding>& one : slips) found.insert(found.end(), one.begin(), one.end());
   return found;
 }
 

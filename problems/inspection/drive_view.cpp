@@ -155,7 +155,10 @@ void update_twist(const RobotView& robot, Drive& d) {
   signals.topRows(drives) = d.motion.transpose();
   signals.bottomRows(d.angle.cols()) = d.angle.middleRows(d.increments ? 1 : 0, n - 1).transpose();
   Matrix steps(3, n - 1);
-  robot.twist.twists(signals, robot.twist.nominal(), steps);
+  if (robot.twist.is_linear())
+    steps.noalias() = robot.twist.matrix(robot.twist.nominal()) * robot.twist.streams(signals);
+  else
+    robot.twist.twists(signals, robot.twist.nominal(), steps);
   d.twist.resize(n, 3);
   Vector sum(n);
   for (Index row = 0; row < 3; ++row) {

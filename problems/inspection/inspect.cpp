@@ -107,9 +107,9 @@ std::vector<Finding> inspect(const Robot& own, std::span<const Recording> record
   append(found, check_factors(robot, dense));
   append(found, check_starts(robot, dense));
   const bool rotation = has(found, "rotation_factor");
-  append(found, check_lag(robot, dense));
+  append(found, check_lag(robot, dense, threads));
   append(found, check_frames(robot, dense));
-  append(found, check_recordings_alike(robot, dense, rotation));
+  append(found, check_recordings_alike(robot, dense, rotation, threads));
   // Where nothing fits, what was seen on the way is no explanation.
   if (has(found, "not_together"))
     found.erase(found.begin() + static_cast<std::ptrdiff_t>(of_recordings), found.end() - 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "problems/inspection/set_checks.hpp"
 
 namespace odobench::inspection {
@@ -91,14 +92,15 @@ Vector shifted(const Vector& t, const Vector& v, double lag) {
   return out;
 }
 
-std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drives) {
+std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drives, int threads) {
+  std::vector<Lag> each(drives.size());
+  parallel_for(drives.size(), threads, [&](std::size_t i) { each[i] = drive_lag(robot, drives[i]); });
   std::vector<Lag> lags;
   std::vector<const Drive*> of;
-  for (const Drive& d : drives) {
-    const Lag lag = drive_lag(robot, d);
-    if (!lag.usable) continue;
-    lags.push_back(lag);
-    of.push_back(&d);
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    if (!each[i].usable) continue;
+    lags.push_back(each[i]);
+    of.push_back(&drives[i]);
   }
   if (lags.empty()) return {};
   const SetLag set = set_lag(lags, of);
@@ -117,11 +119,11 @@ std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drive
     f.figures["highest"] = set.high;
     f.mendable = false;
   }
-  for (std::size_t i = 0; i < drives.size(); ++i) {
+  parallel_for(drives.size(), threads, [&](std::size_t i) {
     Drive& d = drives[i];
     for (Vector* v : {&d.x, &d.y, &d.theta}) *v = shifted(d.t, *v, set.mean);
     update_reference(d);
-  }
+  });
   return {f};
 }
 

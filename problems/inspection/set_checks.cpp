@@ -25,10 +25,10 @@ constexpr Index kFewestSamples = 10;  // that say something
 enum class Motion { Straight, Turning, Other };
 
 Motion motion_of(const RobotView& robot, const Drive& d, Index k) {
-  const double along = std::hypot(d.twist(k, 0), d.twist(k, 1)),
-               turn = robot.distance * std::abs(d.twist(k, 2));
+  const double vx = d.twist(k, 0), vy = d.twist(k, 1), turn = robot.distance * d.twist(k, 2);
+  const double along = vx * vx + vy * vy, turning = turn * turn;
   if (d.used[static_cast<std::size_t>(k)] == 0) return Motion::Other;
-  return along > 3 * turn ? Motion::Straight : turn > 0.8 * along ? Motion::Turning : Motion::Other;
+  return along > 9 * turning ? Motion::Straight : turning > 0.64 * along ? Motion::Turning : Motion::Other;
 }
 
 struct TwistSums {
@@ -51,8 +51,8 @@ TwistSums twist_sums(const RobotView& robot, const std::vector<Drive>& drives) {
       }
       if (motion == Motion::Straight) {
         const Complex f(d.fx[k], d.fy[k]), wheels(d.twist(k, 0), d.twist(k, 1));
-        sums.reference += std::abs(f);
-        sums.wheels += std::abs(wheels);
+        sums.reference += std::sqrt(std::norm(f));
+        sums.wheels += std::sqrt(std::norm(wheels));
         sums.across += f * std::conj(wheels);
         ++sums.straight;
       } else if (motion == Motion::Turning) {
@@ -225,10 +225,15 @@ Finding turned_finding(const RobotView& robot, double beta) {
   return f;
 }
 
-Finding zero_finding(const RobotView& robot, const Vector& angles) {
+Finding zero_finding(const RobotView& robot, const Vector& angles, double beta) {
   Finding f = finding_of(
       "steering_zero",
       fmt::format("steering zeros look off by {} deg (reading minus true)", in_degrees(angles, -1)));
+  if (std::abs(beta) > kAngle) {
+    f.message += fmt::format("; or the reference heading is turned by {:+.1f} deg and they differ by less",
+                             tenths(-beta / kDegree));
+    f.figures["turned"] = -beta;
+  }
   for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
     const double a = angles[static_cast<Index>(i)];
     if (!std::isfinite(a)) continue;
@@ -352,7 +357,7 @@ std::vector<Finding> check_frames(const RobotView& robot, std::vector<Drive>& dr
       found.push_back(turned_finding(robot, beta));
       turn_heading(drives, beta);
     } else if (largest > kAngle && apart > allowed) {
-      found.push_back(zero_finding(robot, angles));
+      found.push_back(zero_finding(robot, angles, beta));
       correct_zeros(robot, drives, angles);
     }
   }

@@ -25,12 +25,12 @@ std::vector<Finding> check_factors(const RobotView& robot, std::vector<Drive>& d
 std::vector<Finding> check_frames(const RobotView& robot, std::vector<Drive>& drives);
 
 // reference_lag by lag_of() of every recording of at least 40 samples without gaps, corrected in `drives`.
-std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drives);
+std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drives, int threads);
 
 // Misfit, slip and repeated speeds of single recordings, or that nothing fits. `rotation_is_off`: a factor of
 // rotations was found, which makes recordings that turn unlike the others.
 std::vector<Finding> check_recordings_alike(const RobotView& robot, std::vector<Drive>& drives,
-                                            bool rotation_is_off);
+                                            bool rotation_is_off, int threads);
 
 // theta, x, y at t + lag by linear interpolation; the ends are held.
 Vector shifted(const Vector& t, const Vector& v, double lag);
