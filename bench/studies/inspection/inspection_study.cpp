@@ -14,7 +14,6 @@
 namespace odobench {
 namespace {
 
-using inspection::Finding;
 using inspection::Severity;
 
 constexpr std::size_t kMostLines = 6;
@@ -23,12 +22,12 @@ Cell number_or_nothing(std::optional<std::size_t> number) {
   return number ? count_cell(static_cast<double>(*number)) : Cell{};
 }
 
-std::vector<Cell> people_row(const Finding& f) {
+std::vector<Cell> people_row(const inspection::Finding& f) {
   return {text_cell(std::string(name_of(f.severity))), text_cell(f.kind), text_cell(printable(f.message)),
           text_cell(std::string(f.fix()))};
 }
 
-std::vector<Cell> machine_row(const Finding& f) {
+std::vector<Cell> machine_row(const inspection::Finding& f) {
   std::vector<Cell> row = people_row(f);
   const std::optional<std::size_t> first = f.first ? f.first : f.sample, last = f.last ? f.last : f.sample;
   row.insert(row.begin() + 2, {text_cell(printable(f.recording)),
@@ -50,8 +49,8 @@ InspectedSet inspect_set(const std::string& data) {
   return inspected;
 }
 
-std::vector<Finding> inspect_recordings(const Robot& robot, std::span<const Recording> recordings,
-                                        int threads) {
+std::vector<inspection::Finding> inspect_recordings(const Robot& robot, std::span<const Recording> recordings,
+                                                    int threads) {
   try {
     return inspection::inspect(robot, recordings, threads);
   } catch (const std::runtime_error&) {
@@ -61,8 +60,8 @@ std::vector<Finding> inspect_recordings(const Robot& robot, std::span<const Reco
   }
 }
 
-std::vector<Table> findings_tables(const std::string& dataset, const std::vector<Finding>& findings,
-                                   bool all) {
+std::vector<Table> findings_tables(const std::string& dataset,
+                                   const std::vector<inspection::Finding>& findings, bool all) {
   Table table{"findings",
               fmt::format("Findings in data set {}", printable(dataset)),
               {text_column("severity"), text_column("kind")},
@@ -110,10 +109,10 @@ AcceptedKinds accepted_kinds(const std::vector<std::string>& lists) {
   return accepted;
 }
 
-std::vector<std::string> told_findings(const std::vector<Finding>& findings, const std::string& place,
-                                       Watcher& watcher) {
+std::vector<std::string> told_findings(const std::vector<inspection::Finding>& findings,
+                                       const std::string& place, Watcher& watcher) {
   std::vector<std::string> notes;
-  for (const Finding& f : findings)
+  for (const inspection::Finding& f : findings)
     if (f.severity != Severity::Note) notes.push_back(fmt::format("{}: {}", f.kind, f.message));
   for (std::size_t i = 0; i < notes.size() && i < kMostLines; ++i) watcher.warn(notes[i]);
   if (notes.size() > kMostLines)
@@ -124,10 +123,10 @@ std::vector<std::string> told_findings(const std::vector<Finding>& findings, con
 std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
                                       bool calibrates, int threads, Watcher& watcher) {
   if (!loaded.calibration || !loaded.dataset) return {};
-  std::vector<Finding> findings =
+  std::vector<inspection::Finding> findings =
       inspect_recordings(loaded.dataset->robot, loaded.calibration->recordings(), threads);
-  std::erase_if(findings, [](const Finding& f) { return f.kind == "layout_asymmetric"; });
-  for (const Finding& f : findings)
+  std::erase_if(findings, [](const inspection::Finding& f) { return f.kind == "layout_asymmetric"; });
+  for (const inspection::Finding& f : findings)
     if (calibrates && f.severity == Severity::Error && !accepted.holds(f.kind))
       throw DataError(fmt::format("{}: {}: {}; {}{}, or calibrate as it is with --accept={}",
                                   loaded.dataset_path, f.kind, f.message, f.fix(),
