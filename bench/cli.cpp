@@ -52,6 +52,7 @@ constexpr std::array<Verb, 18> kVerbs{{
     {"windows", "solve windows of the relative-entropy filter and compare the methods", add_windows},
     {"import", "make a data set of published raw files", add_import},
     {"demo", "make the demo data set", add_demo},
+    {"inspect", "what is implausible about the recordings of a set, and a mended set", add_inspect},
     {"evaluate", "cost and error tables of given parameters", add_evaluate},
     {"list", "solvers with their options, problems, data sets, scenarios", add_list},
     {"report", "stored runs as tables, as one HTML page, or as figures; nothing is solved again", add_report},

@@ -65,6 +65,7 @@ problems/entropy              problems datasets/entropy/entropy_window.hpp
 problems/kalman               problems
 problems/fusion               problems problems/kalman problems/calibration problems/robots datasets
 problems/information          problems problems/calibration problems/robots datasets
+problems/inspection           problems problems/robots problems/calibration datasets datasets/robots
 problems/robots               datasets datasets/robots problems/matrices.hpp
 problems/simulation           datasets/ problems/robots
 problems/simulation/motors    problems/simulation
@@ -79,10 +80,11 @@ solvers/libraries             solvers solvers/box solvers/certificate problems/p
 bench/console                 solvers/run.hpp reports/render bench/studies/watcher.hpp
 bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue
-bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
-bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
+bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/
 tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/

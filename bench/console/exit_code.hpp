@@ -5,7 +5,8 @@ namespace odobench {
 
 enum class ExitCode : int {
   Success = 0,
-  CheckFailed = 1,  // `bench check` found a difference, or not one solver of `bench run` gave a result
+  // `bench inspect` found an error, `bench check` a difference, or not one solver of `bench run` a result.
+  CheckFailed = 1,
   Usage = 2,  // the command line, a configuration file or an output place is wrong (std::invalid_argument)
   Data = 3,   // a data set, record or parameter file is wrong (DataError, std::runtime_error)
   Internal = 70,     // something that nobody foresaw: a fault of the program (EX_SOFTWARE)

@@ -15,6 +15,7 @@
 #include "problems/classic/classic_problems.hpp"
 #include "problems/information/identifiability.hpp"
 #include "reports/kinds/calibration/drive_tables.hpp"
+#include "reports/kinds/calibration/fit_table.hpp"
 
 namespace odobench {
 namespace {
@@ -44,15 +45,18 @@ std::vector<PoseTrack> tracks_of(const CalibrationProblem& problem, const Vector
   return tracks;
 }
 
-// Figures of each drive, for robots other than the thesis', whose tables know x and y apart.
+// Figures of each drive: how well it fits, and more for robots other than the thesis', whose tables know x
+// and y apart.
 void describe_drives(const LoadedProblem& loaded, const std::vector<PoseTrack>& tracks, RunRecord& record) {
   const CalibrationProblem& problem = *loaded.calibration;
-  if (problem.structured()) return;
   Vector nominal(static_cast<Eigen::Index>(problem.parameters().size()));
   for (std::size_t i = 0; i < problem.parameters().size(); ++i)
     nominal[static_cast<Eigen::Index>(i)] = problem.parameters()[i].nominal;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const DriveErrors e = drive_errors(problem.recordings()[i], tracks[i]);
+    const double fit[] = {e.rms_position, e.rms_heading, e.max_position, static_cast<double>(e.samples)};
+    for (std::size_t k = 0; k < kFitSeries.size(); ++k) record.series[kFitSeries[k]].push_back(fit[k]);
+    if (problem.structured()) continue;
     const double figures[] = {e.max_position,
                               e.max_heading,
                               e.end_position,
@@ -65,12 +69,18 @@ void describe_drives(const LoadedProblem& loaded, const std::vector<PoseTrack>& 
   }
 }
 
+void describe_tracks(const LoadedProblem& loaded, const std::vector<PoseTrack>& tracks, RunRecord& record) {
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const MaxErrors e = max_errors(loaded.calibration->recordings()[i], tracks[i]);
+    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
+  }
+  describe_drives(loaded, tracks, record);
+}
+
 void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
   record.parameters = parameter_values(loaded.problem.parameters(), x);
   if (!loaded.calibration) return;
-  for (const MaxErrors& e : loaded.calibration->max_errors(x))
-    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
-  if (!loaded.calibration->structured()) describe_drives(loaded, tracks_of(*loaded.calibration, x), record);
+  describe_tracks(loaded, tracks_of(*loaded.calibration, x), record);
 }
 
 std::map<std::string, double> budget_figures(const Budget& budget) {
@@ -186,6 +196,9 @@ std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records) {
     if (lowest == nullptr || *r.cost < *lowest->cost) lowest = &r;
   }
   std::vector<std::string> notes;
+  for (const RunRecord& r : records)  // what was found in the recordings
+    if (r.kind == "evaluation" && r.label == "nominal" && best.contains({r.problem, r.dataset}))
+      notes.insert(notes.end(), r.notes.begin(), r.notes.end());
   for (const auto& [group, record] : best)
     notes.insert(notes.end(), record->notes.begin(), record->notes.end());
   return notes;
@@ -212,11 +225,7 @@ RunRecord tracks_record(const LoadedProblem& loaded, const std::string& label,
   record.kind = "evaluation";
   record.termination = "evaluated";
   record.cost = cost_of_tracks(*loaded.calibration, tracks);
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const MaxErrors e = max_errors(loaded.calibration->recordings()[i], tracks[i]);
-    record.errors.push_back({e.recording, e.trajectory, e.repetition, {e.x, e.y, e.theta}});
-  }
-  describe_drives(loaded, tracks, record);
+  describe_tracks(loaded, tracks, record);
   return record;
 }
 

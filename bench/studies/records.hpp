@@ -16,7 +16,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
                      const Budget& budget, const Result& result, const RunContext& context,
                      const std::string& time_utc);
 
-// The notes of the lowest run of each problem and data set, for the tables.
+// The notes of the nominal parameters and of the lowest run of each problem and data set, for the tables.
 std::vector<std::string> notes_of_best(const std::vector<RunRecord>& records);
 
 // J and error tables of given parameters (n, parameter units). Of a calibration or of any other problem.

@@ -21,6 +21,7 @@
 #include "bench/options/written_files.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
 #include "bench/studies/importing/log_study.hpp"
+#include "bench/studies/inspection/inspection_study.hpp"
 #include "datasets/import/csv/csv_proposal.hpp"
 
 namespace odobench {
@@ -151,6 +152,8 @@ ExitCode save(const Dataset& dataset, const ImportOptions& options) {
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
   save_announced(dataset, options.out, options.overwrite, options.json);
+  TerminalWatcher watcher(options.quiet);
+  told_findings(inspect_recordings(dataset.robot, dataset.recordings), options.out, watcher);
   return ExitCode::Success;
 }
 

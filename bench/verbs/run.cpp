@@ -60,6 +60,10 @@ void add_options(CLI::App& app, RunOptions& options) {
   add_kernel(app, options.study.kernel, kLastBits);
   add_budget(app, options.study.budget);
   add_classical(app, options.study.classical);
+  app.add_option("--accept", options.study.accept,
+                 "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
+      ->type_name("KIND,...")
+      ->allow_extra_args(false);
   add_value(app, "--start", "nominal|random|METHOD",
             "where runs begin; random starts are shared by all solvers; the result of a classical method of "
             "the robot, e.g. censi [nominal]",

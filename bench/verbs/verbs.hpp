@@ -49,6 +49,12 @@ VerbAction add_demo(CLI::App& app);
 // Parameters outside the box are evaluated with a warning on standard error.
 VerbAction add_evaluate(CLI::App& app);
 
+// `bench inspect SET`: findings about the recordings of a set; with --fix a mended set.
+//
+// CheckFailed where one of them is an error. Throws std::invalid_argument on wrong usage, DataError on a bad
+// set.
+VerbAction add_inspect(CLI::App& app);
+
 // `bench list solvers|problems|data [set.json]`.
 //
 // Throws std::invalid_argument on anything else to list, DataError on a bad set.

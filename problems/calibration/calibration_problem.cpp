@@ -51,13 +51,15 @@ void check(const std::vector<ParameterInfo>& parameters, const std::vector<Recor
   check_recordings(recordings);
 }
 
-// The structured form knows one robot, by its class and names, one rule and one cost, and speeds: increments
-// are another thing.
+// The structured form knows one robot, by its class and names, one rule and one cost, and its signals by
+// their places: increments, or speeds before angles, are another thing.
 bool structured_form_fits(const Robot& robot, const CalibrationOptions& options,
                           const std::vector<Recording>& recordings) {
+  const std::vector<Signal> known = recording_4wis4wid().signals;
   for (const Recording& r : recordings)
-    for (const Signal& s : r.signals)
-      if (s.kind == SignalKind::Increment) return false;
+    if (!std::equal(r.signals.begin(), r.signals.end(), known.begin(), known.end(),
+                    [](const Signal& a, const Signal& b) { return a.name == b.name && a.kind == b.kind; }))
+      return false;
   if (robot.kinematics != "4wis4wid" || robot.table.rule != TwistRule::Mean || !options.as_in_thesis())
     return false;
   return robot.parameters.size() == static_cast<std::size_t>(kCalibrationParameters);

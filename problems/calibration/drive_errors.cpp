@@ -44,7 +44,14 @@ DriveErrors drive_errors(const Recording& recording, const PoseTrack& track) {
     errors.max_position = std::max(errors.max_position, errors.end_position);
     errors.max_heading = std::max(errors.max_heading, errors.end_heading);
     errors.end = {dx, dy, wrapped_angle(turned)};
+    if (k == 0) continue;
+    errors.rms_position += dx * dx + dy * dy;
+    errors.rms_heading += errors.end_heading * errors.end_heading;
+    ++errors.samples;
   }
+  const auto samples = static_cast<double>(std::max<std::size_t>(errors.samples, 1));
+  errors.rms_position = std::sqrt(errors.rms_position / samples);
+  errors.rms_heading = std::sqrt(errors.rms_heading / samples);
   const bool at_start = everywhere || (!reference.sample.empty() && reference.sample[0] == 0);
   const double start = at_start && !reference.theta.empty() ? reference.theta[0] : track.theta[0];
   const double c = std::cos(start), s = std::sin(start), dx = errors.end[0], dy = errors.end[1];

@@ -9,6 +9,8 @@ namespace odobench {
 struct DriveErrors {
   double max_position = 0, max_heading = 0;  // m, rad: over the samples with a reference
   double end_position = 0, end_heading = 0;  // at the last of them
+  double rms_position = 0, rms_heading = 0;  // m, rad: over the samples with a reference but the first
+  std::size_t samples = 0;                   // of these
   // Reference minus odometry at the last of them, in the frame of the reference's first pose (of the
   // odometry's where there is none at the start): m, m, rad in (-pi, pi].
   Eigen::Vector3d end = Eigen::Vector3d::Zero();

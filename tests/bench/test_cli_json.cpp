@@ -69,6 +69,7 @@ class CliJson : public ::testing::Test {
         {"run", {"run", "--problem=rosenbrock", "--solver=lm", "--quiet"}},
         {"filter", {"filter", "--data=" + folder_.file("f.csv", filter_rows())}},
         {"evaluate", {"evaluate"}},
+        {"inspect", {"inspect"}},
         {"list", {"list", "problems"}},
         {"report", {"report", runs}},
         {"export", {"export", runs, "--tum", "--out=" + path("tum")}},

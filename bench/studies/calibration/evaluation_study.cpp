@@ -8,6 +8,7 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/inspection/inspection_study.hpp"
 #include "bench/studies/records.hpp"
 #include "problems/information/identifiability.hpp"
 
@@ -46,6 +47,7 @@ Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, c
     evaluation.records.push_back(evaluation_record(evaluation.loaded, set.label, set.values, context));
     require_finite(evaluation.records.back());
   }
+  evaluation.records.front().notes = say_findings(evaluation.loaded, {}, false, 0, watcher);
   note_undetermined(evaluation);
   for (RunRecord& record :
        classical_records(evaluation.loaded, study.classical, context, &evaluation.sets, watcher)) {

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bench/studies/calibration/fit_remarks.hpp"
 #include "bench/studies/calibration/rule_remark.hpp"
 #include "bench/studies/calibration/wall_remark.hpp"
 #include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/inspection/inspection_study.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/run_tracks.hpp"
 
@@ -56,8 +58,10 @@ std::vector<LoadedProblem> load_problems(const SolverStudy& study, const Catalog
 
 // What is compared with the runs: the nominal parameters, and the classical methods that are asked for.
 void add_evaluations(const SolverStudy& study, const LoadedProblem& loaded, const RunContext& context,
-                     Watcher& watcher, std::vector<RunRecord>& records) {
+                     const std::vector<std::string>& findings, Watcher& watcher,
+                     std::vector<RunRecord>& records) {
   records.push_back(evaluation_record(loaded, "nominal", loaded.problem.start(), context));
+  records.back().notes = findings;
   for (RunRecord& record : classical_records(loaded, study.classical, context, nullptr, watcher))
     records.push_back(std::move(record));
 }
@@ -84,12 +88,20 @@ bool add_remarks(const std::vector<LoadedProblem>& loaded, std::vector<RunRecord
   bool any = false;
   for (const LoadedProblem& one : loaded) {
     RunRecord* lowest = nullptr;
-    for (RunRecord& r : records)
+    const RunRecord* nominal = nullptr;
+    for (RunRecord& r : records) {
+      if (r.kind == "evaluation" && r.label == "nominal" && r.problem == one.name() &&
+          r.dataset == one.dataset_name())
+        nominal = &r;
       if (r.kind == "run" && r.cost && r.problem == one.name() && r.dataset == one.dataset_name() &&
           (lowest == nullptr || *r.cost < *lowest->cost))
         lowest = &r;
+    }
     if (lowest == nullptr) continue;
-    for (const std::string& remark : {wall_remark(one, *lowest), rule_remark(one, *lowest)}) {
+    std::vector<std::string> remarks = {wall_remark(one, *lowest), rule_remark(one, *lowest)};
+    if (nominal != nullptr)
+      for (std::string& remark : fit_remarks(one, *lowest, *nominal)) remarks.push_back(std::move(remark));
+    for (const std::string& remark : remarks) {
       if (remark.empty()) continue;
       lowest->notes.push_back(remark);
       any = true;
@@ -136,6 +148,10 @@ SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, Run
   const RunContext context = run_context(thread_count(study.threads), kernel);
   folder.require_free();
   for (const std::string& text : notes) watcher.note(text);
+  const AcceptedKinds accepted = accepted_kinds(study.accept);
+  std::vector<std::vector<std::string>> findings;
+  for (const LoadedProblem& one : loaded)
+    findings.push_back(say_findings(one, accepted, true, study.threads, watcher));
 
   SolverRuns runs;
   runs.planned = cells.size();
@@ -143,8 +159,8 @@ SolverRuns run_solvers(const SolverStudy& study, const Catalogue& catalogue, Run
     runs.derivatives = check_derivatives(loaded, study.seed, watcher, stop);
     if (!runs.derivatives->agrees) return runs;
   }
-  for (const LoadedProblem& one : loaded)
-    if (one.calibration) add_evaluations(study, one, context, watcher, runs.records);
+  for (std::size_t k = 0; k < loaded.size(); ++k)
+    if (loaded[k].calibration) add_evaluations(study, loaded[k], context, findings[k], watcher, runs.records);
   watcher.results_begin();
   folder.open();
   for (const RunRecord& record : runs.records) folder.append(record);

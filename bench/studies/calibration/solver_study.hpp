@@ -29,6 +29,7 @@ struct SolverStudy {
   bool random_start = false;
   std::string start_method;  // a classical method whose result is the start; empty: none
   ClassicalChoice classical;
+  std::vector<std::string> accept;  // kinds of findings that do not stop a calibration, comma lists
   Budget budget{kDefaultMaxEvaluations};
   int threads = 0;                       // 0: one per core
   std::optional<InstructionSet> kernel;  // none: kernel_in_force() knows

@@ -8,6 +8,7 @@
 #include "bench/studies/context.hpp"
 #include "bench/studies/fusion/fusion_remarks.hpp"
 #include "bench/studies/fusion/fusion_runs.hpp"
+#include "bench/studies/inspection/inspection_study.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/run_tracks.hpp"
 #include "bench/studies/work_size.hpp"
@@ -56,6 +57,7 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
   const InstructionSet kernel = kernel_in_force(study.kernel);
   const LoadedProblem loaded = load_calibration(study.data, kernel);
   require_4wis4wid(loaded, "sensor fusion");
+  const std::vector<std::string> findings = say_findings(loaded, {}, false, study.threads, watcher);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, study.parameters, watcher);
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
   const std::uint64_t seed = study.seed.value_or(sensors.seed);
@@ -84,6 +86,7 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
       put_fusion_row(fused.row, record);
       record.errors = std::move(fused.errors);
       record.time_utc = utc_now();
+      if (runs.records.empty()) record.notes.insert(record.notes.end(), findings.begin(), findings.end());
       runs.records.push_back(std::move(record));
       if (study.keep_tracks) runs.tracks.tracks.push_back({fused.row.label, 1, std::move(fused.track)});
       runs.rows.push_back(std::move(fused.row));

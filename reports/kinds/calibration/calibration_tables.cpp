@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "reports/kinds/calibration/drive_tables.hpp"
+#include "reports/kinds/calibration/fit_table.hpp"
 #include "reports/kinds/calibration/summary_tables.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/statistics/row_groups.hpp"
@@ -37,6 +38,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     Table solvers = solver_table(comparison);
     append_parameters(tables, comparison, solvers, notes);
     append(tables, totals_table(comparison));
+    append(tables, fit_table(comparison));
     if (has_costs(comparison)) tables.push_back(std::move(solvers));
     append(tables, repeats_table(comparison));
   }
@@ -57,6 +59,7 @@ std::vector<Table> evaluation_tables(const std::vector<RunRecord>& records,
     for (Table& table : drive_tables(comparison)) rest.push_back(std::move(table));
     append_parameters(rest, comparison, cost, notes);
     append(rest, totals_table(comparison));
+    append(rest, fit_table(comparison));
     tables.push_back(std::move(cost));
     for (Table& table : rest) tables.push_back(std::move(table));
   }

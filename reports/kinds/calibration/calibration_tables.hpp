@@ -24,6 +24,7 @@ namespace odobench {
 //   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows
 //                      first
 //   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %
+//   fit                how well each drive and all of them fit by the best row (fit_table.hpp)
 //   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active
 //                      bounds
 //   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best
