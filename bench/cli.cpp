@@ -45,7 +45,7 @@ struct Verb {
 };
 
 // In the order of the help. Without a verb the first one is meant.
-constexpr std::array<Verb, 18> kVerbs{{
+constexpr std::array<Verb, 19> kVerbs{{
     {"run", "run solvers on a problem and compare them (the default verb)", add_run},
     {"calibrate", "from logs of any format to parameters, in one go", add_calibrate},
     {"filter", "the relative-entropy filter over a recorded run", add_filter},

@@ -28,7 +28,7 @@ What the log does not say and may not be assumed (counts of a turn, nominal size
 struct CalibrateOptions {
   std::vector<std::string> logs;
   std::string map, robot, name, out = "calibration";
-  std::vector<std::string> nominal, messages;
+  std::vector<std::string> nominal, messages, accept;
   double per_turn = 0;
   bool keep_cut = false, overwrite = false, quiet = false;
   std::string format = "console";
@@ -50,6 +50,10 @@ void add_options(CLI::App& app, CalibrateOptions& o) {
   app.add_option("--name", o.name, "of the robot and the set")->type_name("NAME");
   app.add_option("--msg", o.messages, "definition of a message that a log lacks; may be given again")
       ->type_name("FILE.msg")
+      ->allow_extra_args(false);
+  app.add_option("--accept", o.accept,
+                 "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
+      ->type_name("KIND,...")
       ->allow_extra_args(false);
   app.add_flag("--keep-cut", o.keep_cut, "of a log that is cut off take what stands before");
   app.add_option("--out", o.out, "folder for map, set, results and page [calibration]")->type_name("DIR");
@@ -73,6 +77,7 @@ CalibrateStudy study_of(const CalibrateOptions& o) {
         "--map says what --robot, --nominal, --per-turn and --name would: leave them out");
   study.options.keep_cut = o.keep_cut;
   study.options.messages.assign(o.messages.begin(), o.messages.end());
+  study.accept = o.accept;
   study.out = o.out;
   study.overwrite = o.overwrite;
   return study;

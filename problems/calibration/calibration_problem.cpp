@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
+#include "datasets/robot_4wis4wid.hpp"
 #include "problems/calibration/structure.hpp"
 
 namespace odobench {

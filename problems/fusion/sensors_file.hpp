@@ -1,8 +1,8 @@
 // The sensors of `bench fuse` as a JSON file; docs/fusion.md describes it:
 //   {"seed": 1, "wheels": {"sigma_velocity", "sigma_yaw_rate"}, "start": {"sigma_position", "sigma_heading"},
 //    "sensors": [{"name", "type": "pose|heading|relative_pose|yaw_rate", "rate_hz", "delay_s", "missing",
-//                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...],
-//                 or instead of rate_hz, missing and errors {"file": "gyro_{recording}.csv", "columns": {...}},
+//                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...]
+//     (measured: "file": "gyro_{recording}.csv", "columns" and "unit" instead of rate_hz, missing and errors),
 //    "gyro_bias": {"initial", "walk"}, "odometry_scale": {...}, "gate_probability", "max_delay_s",
 //    "unscented": {"alpha", "beta", "kappa"}}
 #pragma once
@@ -21,8 +21,8 @@ namespace odobench {
 
 struct SyntheticSensor {
   SensorStream stream;  // what the filter believes; without data
-  // Measured, not synthetic: a table per recording, "{recording}" in its name standing for the id, relative to
-  // the sensors' file. Columns by what they are: time, yaw_rate, x, y, heading.
+  // Measured, not synthetic: a table per recording, "{recording}" in its name standing for the id, relative
+  // to the sensors' file. Columns by what they are: time, yaw_rate, x, y, heading.
   std::string file;
   std::map<std::string, std::string> columns;
   double rate_scale = 1, heading_scale = 1;  // to rad/s and rad

@@ -6,14 +6,12 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
-#include "base/json_node.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
 #include "bench/studies/importing/log_study.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/report_study.hpp"
 #include "bench/studies/run_folder.hpp"
-#include "datasets/native/dataset_format.hpp"
 #include "reports/figures/document.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
 #include "reports/page/report_document.hpp"
@@ -21,12 +19,6 @@
 namespace odobench {
 namespace {
 namespace fs = std::filesystem;
-
-bool is_set(const fs::path& log) {
-  if (fs::is_directory(log) || log.extension() != ".json") return false;
-  const JsonNode root = JsonNode::read(log);
-  return root.is_object() && root.text_or_empty("schema") == kDatasetSchema;
-}
 
 // The map that the logs are read by, as text.
 std::string find_map(const CalibrateStudy& study, Watcher& watcher, const Stop& stop) {
@@ -47,6 +39,7 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalo
   SolverStudy solver;
   solver.solvers = {"lm"};
   solver.data = set.string();
+  solver.accept = study.accept;
   SolverRuns runs = run_solvers(solver, catalogue, folder, watcher, stop);
   folder.save(comparison_tables(runs.records, notes_of_best(runs.records)));
   return runs;
@@ -59,7 +52,7 @@ Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogu
   const Existing existing = study.overwrite ? Existing::Replace : Existing::Refuse;
   Calibrated out;
   fs::path set = study.out / "set.json";
-  if (study.logs.size() == 1 && is_set(study.logs.front())) {
+  if (study.logs.size() == 1 && is_dataset(study.logs.front())) {
     set = study.logs.front();
   } else {
     for (const char* name : {"map.json", "set.json", "report.html"})

@@ -20,7 +20,8 @@ struct CalibrateStudy {
   std::filesystem::path map;                // "": proposed
   MapAnswers answers;                       // to the proposal
   LogOptions options;
-  std::filesystem::path out;  // folder: map.json, set.json, results/, report.html
+  std::vector<std::string> accept;  // kinds of findings that do not stop the calibration, comma lists
+  std::filesystem::path out;        // folder: map.json, set.json, results/, report.html
   bool overwrite = false;
 };
 

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 
+#include "base/json_node.hpp"
 #include "base/text.hpp"
 #include "bench/studies/importing/log_alignment.hpp"
 #include "datasets/import/logs/log_import.hpp"
 #include "datasets/logs/formats.hpp"
+#include "datasets/native/dataset_format.hpp"
 
 namespace odobench {
+
+bool is_dataset(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file) || file.extension() != ".json") return false;
+  const JsonNode root = JsonNode::read(file);
+  return root.is_object() && root.text_or_empty("schema") == kDatasetSchema;
+}
 
 ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& stop) {
   const log_import::LoadedLogs loaded =

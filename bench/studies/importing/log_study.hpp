@@ -25,6 +25,9 @@ struct ImportedLogs {
   std::vector<std::string> report;  // signals, clocks, drives; a line each
 };
 
+// Whether a file is a set.json, and so no log.
+bool is_dataset(const std::filesystem::path& file);
+
 // Warnings go to the watcher. Throws DataError, std::invalid_argument, Interruption.
 ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& stop);
 
