@@ -79,6 +79,7 @@ bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue
 bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
