@@ -88,9 +88,10 @@ void differential(const FoundValues& values, bool absolute, KeyTable& table) {
   differential_keys(values.at("b"), values, absolute, table);
 }
 
-// The track that the slip makes of the real one.
+// The slip makes a wider track of the real one, which stands in the URDF.
 void skid_steer(const FoundValues& values, bool absolute, KeyTable& table) {
   const FoundNumber slip = values.at("slip");
+  refuse_no_length(slip.nominal, slip.name);
   const auto track_of = [](const std::vector<Wheel>& wheels) {
     double right = 0, left = 0;
     for (const Wheel& wheel : wheels) {
@@ -99,9 +100,9 @@ void skid_steer(const FoundValues& values, bool absolute, KeyTable& table) {
     }
     return left - right;
   };
-  FoundNumber track{"slip * b", "m", track_of(values.file().wheels), track_of(values.file().nominal_wheels),
-                    std::nullopt};
-  if (slip.deviation && slip.value != 0) track.deviation = *slip.deviation * track.value / slip.value;
+  const double real = track_of(values.file().nominal_wheels) / slip.nominal;
+  FoundNumber track{"slip * b", "m", track_of(values.file().wheels), real, std::nullopt};
+  if (slip.deviation) track.deviation = *slip.deviation * real;
   differential_keys(track, values, absolute, table);
 }
 

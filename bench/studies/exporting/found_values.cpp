@@ -26,6 +26,10 @@ std::string bound_remark(const FoundNumber& n) {
   return n.at_bound.empty() ? "" : fmt::format(", on its {} bound", printable(n.at_bound));
 }
 
+std::string deviation_text(double deviation) {
+  return fmt::format(", +- {:.2g}", deviation);
+}
+
 // Letters, digits and _, a letter first.
 std::string plain_name(const std::string& text) {
   std::string name;
@@ -49,7 +53,7 @@ int digits_of(std::string_view unit) {
 std::string remark_on(const FoundNumber& n) {
   const int digits = digits_of(n.unit);
   std::string text = "nominal " + decimal(n.nominal, digits);
-  if (n.deviation) text += ", +- " + decimal(*n.deviation, digits);
+  if (n.deviation) text += deviation_text(*n.deviation);
   return with_unit(text, n.unit) + bound_remark(n);
 }
 
@@ -57,7 +61,7 @@ std::string words_of(const FoundNumber& n) {
   const int digits = digits_of(n.unit);
   std::string text = fmt::format("{} {}, nominal {}", printable(n.name),
                                  with_unit(decimal(n.value, digits), n.unit), decimal(n.nominal, digits));
-  if (n.deviation) text += ", +- " + decimal(*n.deviation, digits);
+  if (n.deviation) text += deviation_text(*n.deviation);
   return text + bound_remark(n);
 }
 

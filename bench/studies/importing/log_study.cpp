@@ -10,7 +10,8 @@
 namespace odobench {
 
 ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& stop) {
-  const log_import::LoadedLogs loaded = log_import::load_logs(study.map, study.logs, study.options, stop);
+  const log_import::LoadedLogs loaded =
+      log_import::load_logs(study.map, study.logs, study.options, stop, study.poses);
   ImportedLogs out;
   for (const log_import::LogCurves& log : loaded.logs)
     out.report.insert(out.report.end(), log.report.begin(), log.report.end());

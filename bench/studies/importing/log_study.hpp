@@ -17,6 +17,7 @@ struct LogStudy {
   std::vector<std::filesystem::path> logs;
   std::filesystem::path map;
   LogOptions options;
+  std::filesystem::path poses = {};  // table of end poses, in the place of the map's
 };
 
 struct ImportedLogs {
