@@ -1,4 +1,5 @@
-// The folder that keeps what a study found: runs.jsonl, tracks/, parameters/, tables.txt, .md, .csv, .json and .tex.
+// The folder that keeps what a study found: runs.jsonl, tracks/, parameters/, tables.txt, .md, .csv, .json
+// and .tex.
 #pragma once
 
 #include <filesystem>

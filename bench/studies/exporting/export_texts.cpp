@@ -51,6 +51,12 @@ std::string xml_value(const std::string& text) {
   return replaced(replaced(replaced(text, "&", "&amp;"), "\"", "&quot;"), "<", "&lt;");
 }
 
+// wheel_radius_left of wheel_left, wheel_radius_front_left, wheel_radius of the only wheel.
+std::string radius_property(const std::string& wheel) {
+  if (wheel == "wheel") return "wheel_radius";
+  return "wheel_radius_" + (wheel.starts_with("wheel_") ? wheel.substr(6) : wheel);
+}
+
 std::string upper_name(const std::string& text) {
   std::string name;
   for (const unsigned char c : text) name += std::isalnum(c) != 0 ? static_cast<char>(std::toupper(c)) : '_';
@@ -147,15 +153,16 @@ std::string urdf_text(const ParameterFile& file) {
                                     decimal(nominal.y, 6), decimal(nominal.mount + nominal.zero, 6),
                                     wheel.drive.empty() ? "not measured" : decimal(nominal.radius, 6)));
     if (!wheel.drive.empty())
-      text +=
-          fmt::format("<xacro:property name=\"{}_radius\" value=\"{}\"/>\n", name, decimal(wheel.radius, 6));
+      text += fmt::format("<xacro:property name=\"{}\" value=\"{}\"/>\n", radius_property(name),
+                          decimal(wheel.radius, 6));
     text += xml_comment(
         fmt::format("in <joint name=\"{}_{}joint\">", name, wheel.steering.empty() ? "" : "steering_"));
     text += fmt::format("<origin xyz=\"{} {} ${{wheel_z}}\" rpy=\"0 0 {}\"/>\n", decimal(wheel.x, 6),
                         decimal(wheel.y, 6), decimal(wheel.mount + wheel.zero, 6));
     if (wheel.drive.empty()) continue;
     text += xml_comment("in the wheel's <geometry>, with a width of your own");
-    text += fmt::format("<cylinder radius=\"${{{}_radius}}\" length=\"${{{}_width}}\"/>\n", name, name);
+    text +=
+        fmt::format("<cylinder radius=\"${{{}}}\" length=\"${{wheel_width}}\"/>\n", radius_property(name));
   }
   if (const std::optional<FoundMount> mount = found_mount(file)) {
     text += "\n" + xml_comment("in a fixed joint from base_link to tracker: " + words_of(mount->x) + "; " +

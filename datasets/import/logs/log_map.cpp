@@ -107,8 +107,7 @@ void read_signals(const JsonNode& node, LogMap& map) {
   }
   signals.finish();
   if (!map.poses.empty()) {
-    if (!map.reference.empty())
-      node.fail("a reference beside end poses", "one of them");
+    if (!map.reference.empty()) node.fail("a reference beside end poses", "one of them");
     return;
   }
   for (const char* target : {"reference.x", "reference.y", "reference.heading"})
