@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kIdDigits = 12;
+constexpr std::size_t kLongestName = 120;
 
 // The standard deviations of a record are of its free parameters and relative (record.hpp).
 void add_deviations(const RunRecord& record, std::vector<FoundParameter>& found) {
@@ -103,9 +104,9 @@ std::vector<FoundParameter> read_found(const JsonNode& root) {
   return found;
 }
 
-// A label as the name of a file that no other label has.
+// A label as the name of a file that no other label has, and of a length that file systems take.
 std::string file_name(const std::string& label, std::set<std::string>& taken) {
-  const std::string base = vega::slug(label);
+  const std::string base = vega::slug(label).substr(0, kLongestName);
   std::string name = base;
   for (int i = 2; !taken.insert(name).second; ++i) name = base + "_" + std::to_string(i);
   return name;

@@ -289,6 +289,13 @@ TEST_F(CliExport, RunsWithoutACalibrationHaveNoRobot) {
             0);
   EXPECT_TRUE(fs::exists(fs::path(out) / "parameters/rosenbrock/lm.json"));
   expect_refusal({"export", out, "--to=yaml"}, kData, {"parameters of other problems alone"});
+  // Labels may be longer than names of files.
+  const std::string more = (folder_ / "more").string();
+  ASSERT_EQ(run_bench({"--problem=sphere", "--solver=pso[swarm=8,inertia=0.7" + std::string(300, '0') + "]",
+                       "--quiet", "--max-evals=50", "--out=" + more})
+                .exit_code,
+            0);
+  EXPECT_EQ(testing::files_below(fs::path(more) / "parameters").size(), 1U);
 }
 
 TEST_F(CliExport, TracksAsCsv) {

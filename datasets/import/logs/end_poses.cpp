@@ -116,7 +116,11 @@ void join_end_poses(const std::vector<EndPose>& poses, const std::string& file,
                     const std::vector<std::vector<std::filesystem::path>>& logs, Dataset& set) {
   std::vector<std::size_t> line_of(set.recordings.size(), 0);
   std::vector<std::string> known;
-  for (const Recording& r : set.recordings) known.push_back(r.id);
+  for (std::size_t i = 0; i < set.recordings.size(); ++i) {
+    known.push_back(set.recordings[i].id);
+    for (const std::filesystem::path& log : logs[i])
+      if (const std::string stem = log.stem().string(); stem != known.back()) known.push_back(stem);
+  }
   for (const EndPose& pose : poses) {
     const auto fail = [&](const std::string& what) {
       throw DataError(fmt::format("{}:{}: {}", file, pose.line, what));
