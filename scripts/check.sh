@@ -82,6 +82,7 @@ bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue
 bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
 bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies

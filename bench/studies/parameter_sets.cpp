@@ -13,6 +13,7 @@
 #include "base/names.hpp"
 #include "base/range.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/parameter_files.hpp"
 
 namespace odobench {
 namespace {
@@ -58,9 +59,24 @@ ParameterSet from_object(const Json& object, const ParameterNames& of, const std
   return {label, values};
 }
 
+// What runs keep of their results has the values as an object of their own.
+bool is_parameter_file(const Json& root) {
+  if (!root.is_object()) return false;
+  const auto schema = root.find("schema");
+  return schema != root.end() && schema->is_string() && *schema == kParameterSchema;
+}
+
+ParameterSet from_parameter_file(const ParameterNames& of, const std::string& file) {
+  const ParameterFile found = read_parameter_file(file);
+  Json values = Json::object();
+  for (const FoundParameter& one : found.parameters) values[one.parameter.name] = one.parameter.value;
+  return from_object(values, of, file, found.label);
+}
+
 std::vector<ParameterSet> from_file(const ParameterNames& of, const std::string& file) {
   const Json root = parse_json(read_file(file), file);
   const std::string stem = std::filesystem::path(file).stem().string();
+  if (is_parameter_file(root)) return {from_parameter_file(of, file)};
   if (!root.is_array()) return {from_object(root, of, file, stem)};
   std::vector<ParameterSet> sets;
   for (std::size_t i = 0; i < root.size(); ++i)

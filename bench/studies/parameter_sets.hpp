@@ -22,11 +22,12 @@ struct ParameterNames {
 };
 ParameterNames parameter_names(const LoadedProblem& loaded);
 
-// One entry of --parameters: "nominal", a known name ("published:lm", "truth"), or a
-// JSON file holding {"a1": 0.1125, ..., "r4": 0.0254} in the problem's units or an array of such objects;
-// "name" is optional and becomes the label, else the file's stem with a number behind it in an array. Throws
-// std::invalid_argument on a name that is neither (lists the known ones), DataError naming file and key on a
-// file that is not as described: missing, unknown or doubled keys, values that are no finite numbers.
+// One entry of --parameters: "nominal", a known name ("published:lm", "truth"), or a JSON file holding {"a1":
+// 0.1125, ..., "r4": 0.0254} in the problem's units or an array of such objects; "name" is optional and
+// becomes the label, else the file's stem with a number behind it in an array. Or a file that a run keeps of
+// its results (bench/studies/parameter_files.hpp). Throws std::invalid_argument on a name that is neither
+// (lists the known ones), DataError naming file and key on a file that is not as described: missing, unknown
+// or doubled keys, values that are no finite numbers.
 std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std::string& source,
                                           const char* option = "--parameters");
 

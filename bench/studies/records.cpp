@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -248,6 +249,23 @@ RunRecord study_record(const std::string& problem, const std::string& dataset, c
   record.termination = "evaluated";
   record.parameters = parameter_values(parameters, values);
   return record;
+}
+
+std::vector<const RunRecord*> best_of_rows(const std::vector<RunRecord>& records) {
+  std::vector<const RunRecord*> best;
+  for (const RunRecord& record : records) {
+    if (record.parameters.empty() || !record.cost || !std::isfinite(*record.cost)) continue;
+    const auto same = [&](const RunRecord* other) {
+      return other->label == record.label && other->dataset == record.dataset &&
+             other->problem == record.problem;
+    };
+    const auto at = std::find_if(best.begin(), best.end(), same);
+    if (at == best.end())
+      best.push_back(&record);
+    else if (*record.cost < *(*at)->cost)
+      *at = &record;
+  }
+  return best;
 }
 
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs, Watcher& watcher) {

@@ -38,6 +38,10 @@ RunRecord study_record(const std::string& problem, const std::string& dataset, c
                        const std::vector<ParameterInfo>& parameters, const Vector& values,
                        const RunContext& context);
 
+// The best run by J of each label of a problem and data set, of those with parameters, in order of
+// appearance.
+std::vector<const RunRecord*> best_of_rows(const std::vector<RunRecord>& records);
+
 // Records of .jsonl files, or of runs.jsonl in folders, in the order given. Throws DataError when one does
 // not exist or nothing is in them, std::runtime_error "file:line: ..." on a bad record. One that is there
 // twice counts once, with a note.

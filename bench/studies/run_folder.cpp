@@ -9,6 +9,7 @@
 
 #include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/parameter_files.hpp"
 
 namespace odobench {
 namespace fs = std::filesystem;
@@ -26,6 +27,7 @@ std::vector<fs::path> result_files(const fs::path& folder) {
   std::vector<fs::path> files{folder / "runs.jsonl"};
   for (const Format format : kSaved) files.push_back(table_file(folder, format));
   files.push_back(folder / "tracks" / "tracks.json");
+  for (fs::path& file : stored_parameter_files(folder)) files.push_back(std::move(file));
   return files;
 }
 
@@ -37,6 +39,7 @@ RunFolder::RunFolder(fs::path folder, bool overwrite, const char* option)
 void RunFolder::require_free() const {
   if (!keeps()) return;
   require_own_folder(folder_ / "tracks");
+  require_own_folder(folder_ / kParameterFolder);
   for (const fs::path& file : result_files(folder_)) {
     require_replaceable(file);
     std::error_code error;
@@ -74,10 +77,16 @@ void RunFolder::replace(const std::vector<RunRecord>& records) {
 }
 
 void RunFolder::save(const TrackSet& tracks) {
+  save({tracks}, {});
+}
+
+void RunFolder::save(const std::vector<TrackSet>& tracks, const Files& parameters) {
   if (!keeps()) return;
   FileTransaction transaction;
-  for (const auto& [file, bytes] : track_files(tracks)) transaction.add(folder_ / file, bytes);
-  transaction.commit();
+  for (const TrackSet& set : tracks)
+    for (const auto& [file, bytes] : track_files(set)) transaction.add(folder_ / file, bytes);
+  for (const auto& [file, bytes] : parameters) transaction.add(folder_ / file, bytes);
+  if (!transaction.targets().empty()) transaction.commit();
 }
 
 void RunFolder::save(const std::vector<Table>& tables) {

@@ -1,8 +1,11 @@
-// The folder that keeps what a study found: runs.jsonl, tracks/, tables.txt, .md, .csv, .json and .tex.
+// The folder that keeps what a study found: runs.jsonl, tracks/, parameters/, tables.txt, .md, .csv, .json
+// and .tex.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/files.hpp"
@@ -36,6 +39,9 @@ class RunFolder {
   void replace(const std::vector<RunRecord>& records);
   // All files of it, or none. Throw DataError.
   void save(const TrackSet& tracks);
+  // Tracks of calibrations and parameters/*.json together.
+  using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
+  void save(const std::vector<TrackSet>& tracks, const Files& parameters);
   void save(const std::vector<Table>& tables);
 
   // Everything of a study that is through: opens, and tells the watcher before that results begin. `tracks`

@@ -32,6 +32,7 @@ struct ImportOptions {
   std::string from;
   std::string out;
   std::string map;       // of csv: what the columns are
+  std::string poses;     // of logs: table of end poses
   bool propose = false;  // print such a map
   bool show = false;     // print what stands in a log
   LogOptions log;
@@ -65,6 +66,9 @@ void add_options(CLI::App& app, ImportOptions& o) {
       ->type_name("PLACE,...");
   app.add_option("--out", o.out, "data set to write; not with --propose")->type_name("SET.JSON");
   app.add_option("--map", o.map, "robot, signals and units (docs/import.md)")->type_name("MAP.JSON");
+  app.add_option("--poses", o.poses,
+                 "of logs without reference: a table of the poses at the ends, columns drive, x, y, theta")
+      ->type_name("FILE.CSV");
   app.add_flag("--propose", o.propose,
                "print a map for these logs, with null for what they do not say, and why it is as it is");
   app.add_flag("--show", o.show, "print what stands in the logs: sources, rates, fields, first values");
@@ -118,6 +122,7 @@ void check_options(const ImportOptions& o, const ImporterEntry& importer,
   };
   if (o.from.empty()) throw std::invalid_argument("--from is required");
   if (o.show) throw std::invalid_argument("--show is of logs only");
+  if (!o.poses.empty()) throw std::invalid_argument("--poses is of logs only");
   if (o.propose && !importer.maps) throw only("--propose", &ImporterEntry::maps);
   if (!o.map.empty() && !importer.maps) throw only("--map", &ImporterEntry::maps);
   if (o.drop_lost && !importer.drops_lost) throw only("--drop-lost", &ImporterEntry::drops_lost);
@@ -134,6 +139,7 @@ void check_printed(const ImportOptions& o) {
   const char* what = o.propose ? "--propose prints a map" : "--show prints tables";
   for (const auto& [given, option] : {std::pair{o.propose && o.show, "--show"},
                                       {!o.map.empty(), "--map"},
+                                      {!o.poses.empty(), "--poses"},
                                       {!o.out.empty(), "--out"},
                                       {o.overwrite, "--overwrite"},
                                       {o.propose && o.json, "--json"}})
@@ -196,7 +202,7 @@ ExitCode import_of_logs(const ImportOptions& options, const Catalogue& catalogue
   require_writable(options.out, existing_files(options.overwrite));
   TerminalWatcher watcher;
   const LogStudy study{
-      {options.what.begin(), options.what.end()}, read_file(options.map), options.map, log_options(options)};
+      {options.what.begin(), options.what.end()}, read_file(options.map), options.map, log_options(options), options.poses};
   ImportedLogs imported = import_logs(study, watcher, InterruptGuard::stop());
   if (!options.quiet)
     for (const std::string& line : imported.report) note(line);

@@ -65,11 +65,15 @@ VerbAction add_list(CLI::App& app);
 // The tables on standard output; with `out` one HTML page, with `figures` an SVG file per figure instead.
 VerbAction add_report(CLI::App& app);
 
-// `bench export`: trajectories of stored runs for other programs.
+// `bench export`: parameters and trajectories of stored runs for other programs.
 //
-// Trajectories in the format of the TUM RGB-D benchmark: lines "time x y z qx qy qz qw", seconds and metres,
-// z = 0, the heading as a unit quaternion about z; OUT/LABEL/RECORDING.tum, the motion capture as
-// OUT/reference/RECORDING.tum.
+// --to: the parameters of one row as text (docs/export.md) to a file or standard output; what the target
+// cannot say is a warning. Throws std::invalid_argument on an unknown target or row and on a robot that the
+// target does not know, DataError where the folder has no calibrated parameters.
+//
+// --csv: OUT/LABEL/RECORDING.csv, "time_s,x,y,theta". --tum: trajectories in the format of the TUM RGB-D
+// benchmark: lines "time x y z qx qy qz qw", seconds and metres, z = 0, the heading as a unit quaternion
+// about z; OUT/LABEL/RECORDING.tum, the motion capture as OUT/reference/RECORDING.tum.
 VerbAction add_export(CLI::App& app);
 
 // `bench check`: what moved in stored records, without running anything.

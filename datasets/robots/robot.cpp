@@ -51,6 +51,14 @@ TwistRule twist_rule(std::string_view name) {
       fmt::format("unknown twist rule '{}'; expected least_squares or mean", shown(name)));
 }
 
+std::vector<Wheel> wheels_with(const WheelTable& table, const std::vector<double>& values) {
+  std::vector<Wheel> wheels = table.wheels;
+  for (std::size_t i = 0; i < table.parameters.size(); ++i)
+    for (const Binding& binding : table.parameters[i].bindings)
+      field_of(wheels.at(binding.wheel), binding.field) += binding.factor * values.at(i);
+  return wheels;
+}
+
 void set_default_box(RobotParameter& p) {
   const double box =
       p.unit == "m" ? 0.15 * std::abs(p.nominal) : 0.1 * (p.unit == "ratio" ? std::abs(p.nominal) : 1);

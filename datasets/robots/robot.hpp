@@ -33,6 +33,9 @@ Robot robot_of_class(const std::string& kinematics, const std::vector<RobotParam
                      const std::map<std::string, double>& dimensions = {},
                      const std::vector<std::pair<std::string, std::string>>& ties = {});
 
+// The wheels with these values of the table's parameters, in its order.
+std::vector<Wheel> wheels_with(const WheelTable& table, const std::vector<double>& values);
+
 // The box by default: 15 % of a length, 0.1 rad of an angle, 10 % of a ratio to either side.
 void set_default_box(RobotParameter& parameter);
 

@@ -68,8 +68,9 @@ TEST(Cli, CalibratesTheDemoSetAndKeepsRecordsAndTables) {
   const ProcessResult run = run_bench({"--solver=lm", "--out=" + out, "--seed=3"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, IsEmpty());  // no terminal: no progress
-  EXPECT_THAT(names_in(out), ElementsAre("runs.jsonl", "tables.csv", "tables.json", "tables.md", "tables.tex",
-                                         "tables.txt", "tracks"));
+  EXPECT_THAT(names_in(out), ElementsAre("parameters", "runs.jsonl", "tables.csv", "tables.json", "tables.md",
+                                         "tables.tex", "tables.txt", "tracks"));
+  EXPECT_THAT(names_in(out + "/parameters"), ElementsAre("lm.json"));
   EXPECT_THAT(names_in(out + "/tracks"),
               ElementsAre("1.npy", "2.npy", "reference.npy", "time.npy", "tracks.json"));
 

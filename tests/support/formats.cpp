@@ -155,6 +155,22 @@ std::string run_directory(const std::string& name, const std::string& bytes, con
   return (folder / "run").string();
 }
 
+const std::string kEndPoses = "drive;x [mm];y [mm];theta_deg\nrun_1;1.5;0.25;-3\n";
+
+std::vector<Words> read_end_poses(const std::string& poses, const TemporaryFolder& folder) {
+  std::string log = "t,left,right\n";
+  for (int k = 0; k < 40; ++k)
+    log += std::to_string(k) + "e-1," + std::to_string(k) + "," + std::to_string(2 * k) + "\n";
+  const std::string map = R"({"schema": "odobench-import", "schema_version": 1, "name": "tape",
+    "robot": {"name": "r", "kinematics": "differential"}, "poses": "poses.csv",
+    "sources": {"w": {"files": "run_*.csv", "time": "t", "time_unit": "s"}},
+    "signals": {"wheel_angle.left": {"field": "left", "unit": "rad"},
+                "wheel_angle.right": {"field": "right", "unit": "rad"}}})";
+  folder.file("poses.csv", poses);
+  return {{"import", folder.file("run_1.csv", log), "--map=" + folder.file("map.json", map), "--quiet",
+           "--overwrite", "--out=" + out(folder, "tape.json")}};
+}
+
 std::vector<Words> read_scenario(const std::string& bytes, const TemporaryFolder& folder) {
   const std::string file = folder.file("scenario.json", bytes);
   return {{"list", "scenarios", file},
@@ -299,6 +315,16 @@ std::vector<Format> make_formats() {
          return {{"export", run_directory("tracks/tracks.json", b, f), "--tum", "--overwrite",
                   "--out=" + out(f, "tum")}};
        }},
+      {"kept_parameters", [] { return std::vector<std::string>{prepared_file("run/parameters/lm.json")}; },
+       [](Bytes b, Files f) -> Commands {
+         const std::string run = run_directory("parameters/lm.json", b, f);
+         return {{"export", run, "--to=ros2", "--row=lm"},
+                 {"export", run, "--to=c", "--out=" + out(f, "p.h"), "--overwrite"},
+                 {"evaluate", "--data=" + (prepared() / "set.json").string(),
+                  "--parameters=" + run + "/parameters/lm.json"}};
+       }},
+      {"end_poses", [] { return std::vector<std::string>{kEndPoses}; },
+       [](Bytes b, Files f) -> Commands { return read_end_poses(b, f); }},
       {"array", [] { return std::vector<std::string>{prepared_file("run/tracks/1.npy")}; },
        [](Bytes b, Files f) -> Commands {
          return {{"export", run_directory("tracks/1.npy", b, f), "--tum", "--overwrite",

@@ -11,6 +11,7 @@
 #include "bench/studies/cell_recorder.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/inspection/inspection_study.hpp"
+#include "bench/studies/parameter_files.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/run_tracks.hpp"
 
@@ -129,11 +130,14 @@ void run_all(const SolverStudy& study, const std::vector<LoadedProblem>& loaded,
   watcher.runs_end();
   runs.interrupted = stop.requested();
   recorder.move_to(runs.records);
-  for (const LoadedProblem& one : loaded)
-    if (one.calibration && folder.keeps()) folder.save(run_tracks(one, runs.records));
   const bool remarked = !runs.interrupted && add_remarks(loaded, runs.records);
   // Cells end in an order that depends on the threads; the finished file does not.
   if (remarked || !recorder.in_order()) folder.replace(runs.records);
+  if (!folder.keeps()) return;
+  std::vector<TrackSet> tracks;
+  for (const LoadedProblem& one : loaded)
+    if (one.calibration) tracks.push_back(run_tracks(one, runs.records));
+  folder.save(tracks, parameter_files(loaded, runs.records));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -60,24 +59,6 @@ std::optional<StoredSource> stored_source(const std::string& entry) {
     if (holds_runs(entry.substr(0, colon)))
       return StoredSource{entry.substr(0, colon), entry.substr(colon + 1)};
   return std::nullopt;
-}
-
-// The best run by J of each row, in order of appearance.
-std::vector<const RunRecord*> best_of_rows(const std::vector<RunRecord>& records) {
-  std::vector<const RunRecord*> best;
-  for (const RunRecord& record : records) {
-    if (record.parameters.empty() || !record.cost || !std::isfinite(*record.cost)) continue;
-    const auto same = [&](const RunRecord* other) {
-      return other->label == record.label && other->dataset == record.dataset &&
-             other->problem == record.problem;
-    };
-    const auto at = std::find_if(best.begin(), best.end(), same);
-    if (at == best.end())
-      best.push_back(&record);
-    else if (*record.cost < *(*at)->cost)
-      *at = &record;
-  }
-  return best;
 }
 
 std::vector<const RunRecord*> wanted_rows(const std::vector<RunRecord>& records, const StoredSource& source) {

@@ -86,6 +86,7 @@ class Aligner {
   }
 
   LogAlignment align() {
+    if (loaded_.map.reference.empty()) return std::move(out_);  // end poses: nothing to align by
     const std::optional<std::string> wanted = wanted_source(loaded_.map);
     for (std::size_t k = 0; k < loaded_.logs.size(); ++k) {
       stop_.check();

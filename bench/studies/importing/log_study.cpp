@@ -19,7 +19,7 @@ bool is_dataset(const std::filesystem::path& file) {
 
 ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& stop) {
   const log_import::LoadedLogs loaded =
-      log_import::load_logs(study.map, study.map_file, study.logs, study.options, stop);
+      log_import::load_logs(study.map, study.map_file, study.logs, study.options, stop, study.poses);
   ImportedLogs out;
   for (const log_import::LogCurves& log : loaded.logs)
     out.report.insert(out.report.end(), log.report.begin(), log.report.end());

@@ -18,6 +18,7 @@ struct LogStudy {
   std::string map;                 // its text
   std::filesystem::path map_file;  // for messages and the set's provenance
   LogOptions options;
+  std::filesystem::path poses = {};  // table of end poses, in the place of the map's
 };
 
 struct ImportedLogs {

@@ -33,6 +33,10 @@ Part PartFinder::common_time() const {
     wheels.from = std::max(wheels.from, curves_.signals[i].time.front() - shifts_[i]);
     wheels.to = std::min(wheels.to, curves_.signals[i].time.back() - shifts_[i]);
   }
+  if (curves_.x.time.empty()) {
+    if (wheels.from < wheels.to) return wheels;
+    throw DataError(fmt::format("{}: the wheels' signals share no time", curves_.id));
+  }
   const double first = curves_.x.time.front() - reference_shift_,
                last = curves_.x.time.back() - reference_shift_;
   const Part whole{std::max(wheels.from, first), std::min(wheels.to, last), ""};

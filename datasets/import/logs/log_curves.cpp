@@ -101,7 +101,7 @@ class CurveReader {
         out_.others.push_back(take(field, field.target));
         for (double& v : out_.others.back().value) v *= field.scale;
       }
-    for (const Curve* curve : {&out_.x, &out_.heading}) report(*curve);
+    if (!map_.reference.empty()) report(out_.x);
     for (const Curve& curve : out_.signals) report(curve);
     for (const Curve& curve : out_.others) report(curve);
     return std::move(out_);
@@ -109,8 +109,10 @@ class CurveReader {
 
  private:
   void read_reference() {
-    const SourceRows& rows = rows_.of(map_.reference.front().source);
+    const bool none = map_.reference.empty();
+    const SourceRows& rows = rows_.of(none ? map_.signals.front().at.source : map_.reference.front().source);
     out_.begin_ns = rows.time_ns.empty() ? 0 : rows.time_ns.front();
+    if (none) return;
     std::vector<Curve> curves;
     for (const MappedField& field : map_.reference) {
       curves.push_back(take(field, field.target));
@@ -144,7 +146,6 @@ class CurveReader {
   }
 
   void report(const Curve& curve) {
-    if (&curve == &out_.heading) return;
     double gap = 0;
     for (std::size_t k = 1; k < curve.time.size(); ++k)
       gap = std::max(gap, curve.time[k] - curve.time[k - 1]);

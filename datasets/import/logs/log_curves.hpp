@@ -28,8 +28,9 @@ struct Curve {
 struct LogCurves {
   std::string id;  // of the file's name
   std::vector<std::filesystem::path> files;
-  std::int64_t begin_ns = 0;  // stamp of t = 0, of the reference's first row by its own clock
-  Curve x, y, heading;        // the tracked frame; m, rad, unwrapped
+  // Stamp of t = 0: of the first row by its own clock, of the reference or, without, of the first signal.
+  std::int64_t begin_ns = 0;
+  Curve x, y, heading;  // the tracked frame; m, rad, unwrapped; empty without reference
   // The robot's signals in its order: a drive's angle since some time (rad), whatever it was measured as; a
   // steering angle (rad).
   std::vector<Curve> signals;

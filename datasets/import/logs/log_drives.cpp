@@ -11,7 +11,8 @@
 namespace odobench::log_import {
 namespace {
 
-constexpr double kDenseStep = 0.1;  // s, of a reference whose stamps are the grid
+constexpr double kDenseStep = 0.1;   // s, of a reference whose stamps are the grid
+constexpr double kLeastStep = 2e-6;  // s, of stamps of different sources
 
 class DriveMaker {
  public:
@@ -43,9 +44,21 @@ class DriveMaker {
     return found == offsets.end() ? 0 : found->second;
   }
 
+  // Stamps of the first wheel, where nothing else is known in between.
+  std::vector<double> own_grid(const Part& part) const {
+    std::vector<double> stamps;
+    for (const double time : curves_.signals.front().time) {
+      const double t = time - shifts_.front();
+      if (t >= part.from && t <= part.to && (stamps.empty() || t - stamps.back() >= kLeastStep))
+        stamps.push_back(t);
+    }
+    return stamps;
+  }
+
   // Stamps of the drive, and which of them have a reference.
   std::vector<double> grid(const Part& part, std::vector<std::size_t>& sample,
                            std::vector<std::size_t>& rows) const {
+    if (curves_.x.time.empty()) return own_grid(part);
     std::vector<double> stamps;
     for (std::size_t k = 0; k < curves_.x.time.size(); ++k) {
       const double t = curves_.x.time[k] - reference_shift_;
@@ -65,12 +78,11 @@ class DriveMaker {
     std::size_t next = 0;
     for (const double t : all) {
       const bool of_reference = next < stamps.size() && t == stamps[next];
-      const double least = 2e-6;
       if (of_reference) {
-        while (!kept.empty() && t - kept.back() < least) kept.pop_back();
+        while (!kept.empty() && t - kept.back() < kLeastStep) kept.pop_back();
         sample.push_back(kept.size());
         ++next;
-      } else if ((!kept.empty() && t - kept.back() < least)) {
+      } else if ((!kept.empty() && t - kept.back() < kLeastStep)) {
         continue;
       }
       kept.push_back(t);
@@ -101,6 +113,7 @@ class DriveMaker {
       }
       r.signals.push_back(std::move(signal));
     }
+    if (curves_.x.time.empty()) r.reference = {{0, t.size() - 1}, {0, 0}, {0, 0}, {0, 0}};
     for (const std::size_t k : rows) {
       const double theta = curves_.heading.value[k] - mount_.yaw;
       const double c = std::cos(theta), s = std::sin(theta);

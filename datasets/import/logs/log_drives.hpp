@@ -1,8 +1,9 @@
 // From curves to recordings: one clock, one grid, drives without gaps.
 //
-// Where the reference comes at 10 Hz or more the stamps are its own; else those of the wheels and the
-// reference together, and the reference stands at its own only. With A(t) a drive's angle, linear between its
-// stamps,
+// Without a reference the stamps are those of the first wheel; start (0, 0, 0) and end are where it stands,
+// the end as (0, 0, 0) until end_poses.hpp knows it. Where the reference comes at 10 Hz or more the stamps
+// are its own; else those of the wheels and the reference together, and the reference stands at its own only.
+// With A(t) a drive's angle, linear between its stamps,
 //     increment[j] = A(t[j]) - A(t[j-1]),   increment[0] = 0,
 // so that the sum over a drive is exact; a steering angle is taken at the middle of (t[j-1], t[j]). The
 // tracked frame (x, y, theta)_m with its mount (mx, my, yaw) in the robot's frame gives the robot's pose

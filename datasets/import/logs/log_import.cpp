@@ -45,6 +45,7 @@ class DatasetMaker {
       set_.notes.push_back(
           fmt::format("{} names of drives in the map, {} drives: names from \"{}\" on are not used",
                       map.names.size(), next_name_, shown(map.names[next_name_])));
+    if (!map.poses.empty()) join_end_poses(loaded_.poses, map.poses.string(), logs_, set_);
     return std::move(set_);
   }
 
@@ -57,6 +58,7 @@ class DatasetMaker {
       Recording& r = drives.recordings[k];
       name(r, drives.names[k].empty() ? log.id : drives.names[k]);
       set_.recordings.push_back(std::move(r));
+      logs_.push_back(log.files);
     }
   }
 
@@ -78,6 +80,7 @@ class DatasetMaker {
   const LoadedLogs& loaded_;
   const Adjustment& adjustment_;
   Dataset set_;
+  std::vector<std::vector<fs::path>> logs_;  // of each recording
   std::size_t next_name_ = 0;
   std::set<std::pair<std::string, int>> taken_;
   std::set<std::string> ids_;
@@ -86,10 +89,15 @@ class DatasetMaker {
 }  // namespace
 
 LoadedLogs load_logs(const std::string& map_text, const fs::path& map_file, const std::vector<fs::path>& logs,
-                     const LogOptions& options, const Stop& stop) {
+                     const LogOptions& options, const Stop& stop, const fs::path& poses) {
   LoadedLogs loaded;
-  loaded.map = parse_log_map(map_text, map_file.string());
+  loaded.map = parse_log_map(map_text, map_file.string(), poses);
   loaded.map_sha256 = sha256(map_text);
+  if (const fs::path& table = loaded.map.poses; !table.empty()) {
+    const std::string rows = read_file(table);
+    loaded.poses = parse_end_poses(rows, table.string());
+    loaded.files.push_back({printable(table.filename().string()), sha256(rows)});
+  }
   for (const LogGroup& group : group_logs(loaded.map, logs)) {
     stop.check();
     loaded.logs.push_back(read_curves(loaded.map, group, options, stop));

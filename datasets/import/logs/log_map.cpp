@@ -106,12 +106,16 @@ void read_signals(const JsonNode& node, LogMap& map) {
       signals.take(key);
   }
   signals.finish();
+  if (!map.poses.empty()) {
+    if (!map.reference.empty()) node.fail("a reference beside end poses", "one of them");
+    return;
+  }
   for (const char* target : {"reference.x", "reference.y", "reference.heading"})
     if (std::none_of(map.reference.begin(), map.reference.end(),
                      [&](const MappedField& f) { return f.target == target; }))
       node.fail(fmt::format("no \"{}\"", target),
                 "where the robot was: reference.x, reference.y and "
-                "reference.heading");
+                "reference.heading, or a table of end poses (\"poses\")");
   std::sort(map.reference.begin(), map.reference.end(), [](const MappedField& a, const MappedField& b) {
     const auto place = [](const MappedField& f) {
       return f.target == "reference.heading" ? 2 : f.target.back() - 'x';
@@ -178,7 +182,19 @@ void check_schema(const JsonNode& root) {
     version.fail(fmt::format("version {}", version.integer()),
                  fmt::format("{}", csv_import::kMapSchemaVersion));
   allow_keys(root, {"schema", "schema_version", "name", "description", "source", "licence", "robot",
-                    "sources", "signals", "mount", "drives", "limits"});
+                    "sources", "signals", "poses", "mount", "drives", "limits"});
+}
+
+// What needs to know where the robot was in between.
+void refuse_with_poses(const JsonNode& root, const LogMap& map) {
+  if (root.has("mount"))
+    root.at("mount").fail("a mount", "none: end poses are those of the robot's own frame");
+  for (const MappedSource& source : map.sources)
+    if (!source.offset_s)
+      root.at("sources")
+          .at(source.name)
+          .at("offset_s")
+          .fail("\"estimate\"", "a number: there is no reference");
 }
 
 }  // namespace
@@ -188,7 +204,7 @@ const MappedSource& source_of(const LogMap& map, const std::string& name) {
                        [&](const MappedSource& s) { return s.name == name; });
 }
 
-LogMap parse_log_map(std::string_view text, const std::string& file) {
+LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses) {
   const JsonNode root = JsonNode::parse(text, file);
   check_schema(root);
   LogMap map;
@@ -200,6 +216,9 @@ LogMap parse_log_map(std::string_view text, const std::string& file) {
   map.licence = root.text_or_empty("licence");
   map.robot = read_robot(root.at("robot"), 2);
   read_sources(root.at("sources"), map);
+  if (root.has("poses")) map.poses = std::filesystem::path(file).parent_path() / root.at("poses").text();
+  if (!poses.empty()) map.poses = poses;
+  if (!map.poses.empty()) refuse_with_poses(root, map);
   if (root.has("limits")) read_limits(root.at("limits"), map);
   read_signals(root.at("signals"), map);
   if (root.has("mount")) read_mount(root.at("mount"), map);

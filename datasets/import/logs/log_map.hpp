@@ -54,7 +54,8 @@ struct LogMap {
   std::string name, description, source, licence;
   Robot robot;
   std::vector<MappedSource> sources;
-  std::vector<MappedField> reference;  // x, y, heading
+  std::vector<MappedField> reference;  // x, y, heading; none where end poses were measured
+  std::filesystem::path poses;         // table of such (end_poses.hpp), "" without
   std::vector<MappedSignal> signals;   // those of the robot, in its order
   std::vector<MappedField> others;     // gyro.z, accel.x, accel.y, camera.*: optional ones may be missing
   double mount_x = 0, mount_y = 0, mount_yaw = 0;  // of the tracked frame in the robot's; m, rad
@@ -71,8 +72,9 @@ const MappedSource& source_of(const LogMap& map, const std::string& name);
 
 // Throws DataError "file: /place: found ..., expected ..." for broken JSON, unknown keys and names (with the
 // nearest known one), null, wrong units, a robot that read_robot() refuses, sources that do not exist,
-// signals that the robot has not or that are missing.
-LogMap parse_log_map(std::string_view text, const std::string& file);
+// signals that the robot has not or that are missing. A map without reference has "poses", a file beside it;
+// `poses` goes before that one.
+LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses = {});
 
 // Whether the JSON is such a map; else it is one of datasets/import/csv, whose columns stand in one table.
 bool is_log_map(std::string_view text, const std::string& file);

@@ -1,0 +1,35 @@
+/* Robot 'courier' of class omni4_full, calibrated by lm (row 'lm', run 0123456789ab, 2026-01-02T03:04:05Z) */
+/* on data set 'drives' (cccccccccccc), calibration[every_sample,arc], J = 0.0125 */
+#ifndef ODOMETRY_H
+#define ODOMETRY_H
+
+#define ODOMETRY_R1 (0.201500) /* nominal 0.200000, +- 1.3e-05 m */
+#define ODOMETRY_R2 (0.203000) /* nominal 0.200000, +- 1.3e-05 m */
+#define ODOMETRY_R3 (0.204500) /* nominal 0.200000, +- 1.3e-05 m */
+#define ODOMETRY_R4 (0.206000) /* nominal 0.200000, +- 1.3e-05 m */
+#define ODOMETRY_R1_2 (0.051875) /* nominal 0.050000, +- 1.3e-05 m */
+#define ODOMETRY_R2_2 (0.052250) /* nominal 0.050000, +- 1.3e-05 m */
+#define ODOMETRY_R3_2 (0.052625) /* nominal 0.050000, +- 1.3e-05 m */
+#define ODOMETRY_R4_2 (0.050375) /* nominal 0.050000, +- 1.3e-05 m */
+#define ODOMETRY_MOUNT1 (0.010000) /* nominal 0.000000, +- 1.3e-05 rad */
+#define ODOMETRY_MOUNT2 (0.015000) /* nominal 0.000000, +- 1.3e-05 rad */
+#define ODOMETRY_MOUNT3 (0.020000) /* nominal 0.000000, +- 1.3e-05 rad */
+#define ODOMETRY_MOUNT4 (0.025000) /* nominal 0.000000, +- 1.3e-05 rad */
+#define ODOMETRY_FRONT_LEFT_X (0.142482) /* m, nominal 0.141421 */
+#define ODOMETRY_FRONT_LEFT_Y (0.142482) /* m, nominal 0.141421 */
+#define ODOMETRY_FRONT_LEFT_RADIUS (0.051875) /* m, nominal 0.050000 */
+#define ODOMETRY_FRONT_LEFT_MOUNT (2.366194) /* rad, nominal 2.356194 */
+#define ODOMETRY_REAR_LEFT_X (-0.143543) /* m, nominal -0.141421 */
+#define ODOMETRY_REAR_LEFT_Y (0.143543) /* m, nominal 0.141421 */
+#define ODOMETRY_REAR_LEFT_RADIUS (0.052250) /* m, nominal 0.050000 */
+#define ODOMETRY_REAR_LEFT_MOUNT (3.941991) /* rad, nominal 3.926991 */
+#define ODOMETRY_REAR_RIGHT_X (-0.144603) /* m, nominal -0.141421 */
+#define ODOMETRY_REAR_RIGHT_Y (-0.144603) /* m, nominal -0.141421 */
+#define ODOMETRY_REAR_RIGHT_RADIUS (0.052625) /* m, nominal 0.050000 */
+#define ODOMETRY_REAR_RIGHT_MOUNT (5.517787) /* rad, nominal 5.497787 */
+#define ODOMETRY_FRONT_RIGHT_X (0.145664) /* m, nominal 0.141421 */
+#define ODOMETRY_FRONT_RIGHT_Y (-0.145664) /* m, nominal -0.141421 */
+#define ODOMETRY_FRONT_RIGHT_RADIUS (0.050375) /* m, nominal 0.050000 */
+#define ODOMETRY_FRONT_RIGHT_MOUNT (7.093583) /* rad, nominal 7.068583 */
+
+#endif
