@@ -84,7 +84,7 @@ bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalo
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
-bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
+bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting
 bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/

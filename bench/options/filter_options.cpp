@@ -29,10 +29,12 @@ void add_constants(CLI::App& app, EntropyOptions& o) {
             [&c](const std::string& text) {
               c.samples = static_cast<int>(whole_number("--samples", text, 3, 1000));
             });
-  add_value(app, "--dt", "S", "sampling period [the first step of time_s]",
+  add_value(app, "--dt", "S", "sampling period [the first step of time_s, the median where steps differ]",
             [&o](const std::string& text) { o.dt = finite_number("--dt", text, true, 3600); });
+  app.add_flag("--resample", o.resample,
+               "where rows are missing (steps of 2 to 11 periods) fill them in, linearly");
   add_value(app, "--time-tolerance", "X",
-            fmt::format("of a time step against the sampling period, relative [{:g}]", o.time_tolerance),
+            "of a time step against the sampling period, relative [0.4: stamps of arrival jitter]",
             [&o](const std::string& text) {
               o.time_tolerance = finite_number("--time-tolerance", text, true, 1e3);
             });

@@ -201,8 +201,11 @@ ExitCode import_of_logs(const ImportOptions& options, const Catalogue& catalogue
   if (options.out.empty()) throw std::invalid_argument("--out is required");
   require_writable(options.out, existing_files(options.overwrite));
   TerminalWatcher watcher;
-  const LogStudy study{
-      {options.what.begin(), options.what.end()}, read_file(options.map), options.map, log_options(options), options.poses};
+  const LogStudy study{{options.what.begin(), options.what.end()},
+                       read_file(options.map),
+                       options.map,
+                       log_options(options),
+                       options.poses};
   ImportedLogs imported = import_logs(study, watcher, InterruptGuard::stop());
   if (!options.quiet)
     for (const std::string& line : imported.report) note(line);

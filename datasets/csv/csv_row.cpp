@@ -21,8 +21,8 @@ std::string in_quotes(std::string_view text) {
 
 }  // namespace
 
-void CsvRow::fail(const std::string& message) const {
-  throw DataError(fmt::format("{}:{}: {}", file_, line_, message));
+void CsvRow::fail_at(std::size_t line, const std::string& message) const {
+  throw DataError(fmt::format("{}:{}: {}", file_, line, message));
 }
 
 std::size_t CsvRow::column(std::string_view name) const {

@@ -24,7 +24,8 @@ class CsvRow {
   // The number in `text`, a part of the row's field `column`.
   double number(std::string_view text, std::size_t column) const;
   // Throws DataError "file:line: message".
-  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail(const std::string& message) const { fail_at(line_, message); }
+  [[noreturn]] void fail_at(std::size_t line, const std::string& message) const;
   const std::string& file() const { return file_; }
   const std::string& name(std::size_t column) const { return names_[column]; }
   const std::vector<std::string>& names() const { return names_; }

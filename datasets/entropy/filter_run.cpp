@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,10 @@ namespace odobench {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
+
+constexpr std::int64_t kRowsForPeriod = 21;    // at most; a window's rows are waited for anyway
+constexpr double kEven = 0.01, kJitter = 0.4;  // of the period
+constexpr double kMostFilled = 11;             // periods from row to row
 
 std::string numbered(const char* stem, int number, const char* unit) {
   return fmt::format("{}{}_{}", stem, number, unit);
@@ -127,13 +132,33 @@ void FilterRunReader::find_dt() {
     dt_ = *options_.dt;
     return;
   }
-  for (FilterRow& row : ahead_)
-    if (!read(row)) {
-      if (interrupted()) return;
-      too_short(&row - ahead_.data());
-    }
-  ahead_count_ = 2;
-  dt_ = ahead_[1].time_s - ahead_[0].time_s;
+  std::vector<double> steps;
+  const auto wanted =
+      static_cast<std::size_t>(std::clamp<std::int64_t>(options_.least_rows, 2, kRowsForPeriod));
+  for (FilterRow row; ahead_.size() < wanted && read(row);) {
+    if (!ahead_.empty()) steps.push_back(row.time_s - ahead_.back().time_s);
+    ahead_.push_back(row);
+  }
+  if (interrupted()) return;
+  if (steps.empty()) too_short(static_cast<std::int64_t>(ahead_.size()));
+  dt_ = steps.front();
+  const auto off = [this](double step) { return std::abs(step - dt_) > kEven * dt_; };
+  if (!options_.time_tolerance && std::any_of(steps.begin(), steps.end(), off)) {
+    std::vector<double> sorted = steps;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
+    dt_ = sorted[sorted.size() / 2];
+  }
+  std::deque<FilterRow> rows;
+  rows.swap(ahead_);
+  last_time_ = rows.front().time_s;
+  for (const FilterRow& row : rows) {
+    if (!ahead_.empty()) check_time(row);
+    if (options_.resample && last_row_) fill_between(*last_row_, row);
+    last_row_ = row;
+    last_time_ = row.time_s;
+    ahead_.push_back(row);
+  }
 }
 
 void FilterRunReader::too_short(std::int64_t rows) const {
@@ -146,16 +171,49 @@ void FilterRunReader::too_short(std::int64_t rows) const {
                            options_.least_rows));
 }
 
-void FilterRunReader::check_time(double time) {
-  const double step = time - last_time_;
+void FilterRunReader::check_time(const FilterRow& row) {
+  const double step = row.time_s - last_time_;
   if (!(step > 0))
-    stream_.fail(fmt::format("found the time {} s after {} s, expected it to increase", time, last_time_));
-  // dt_ is 0 until the second row says what it is. Times of long runs are written with few digits after the
-  // point.
-  const double rounding = 1e-12 * std::abs(time);
-  if (dt_ > 0 && std::abs(step - dt_) > options_.time_tolerance * dt_ + rounding)
-    stream_.fail(fmt::format("found a time step of {:.9g} s, expected {:.9g} s within {:g} %", step, dt_,
-                             100 * options_.time_tolerance));
+    stream_.fail_at(row.line, fmt::format("found the time {} s after {} s, expected it to increase",
+                                          row.time_s, last_time_));
+  if (!(dt_ > 0)) return;  // not yet known
+  const double whole = options_.resample ? std::max(1.0, std::round(step / dt_)) : 1;
+  // Times of long runs are written with few digits after the point.
+  const double rounding = 1e-12 * std::abs(row.time_s), error = std::abs(step - whole * dt_);
+  if (error > kEven * dt_ + rounding) {
+    ++jittered_;
+    jitter_ = std::max(jitter_, error);
+  }
+  if (error <= options_.time_tolerance.value_or(kJitter) * dt_ + rounding && whole <= kMostFilled) return;
+  stream_.fail_at(row.line, fmt::format("found a time step of {:.9g} s, expected {:.9g} s within {:g} %{}; "
+                                        "--time-tolerance and --dt state them",
+                                        step, dt_, 100 * options_.time_tolerance.value_or(kJitter),
+                                        !options_.resample && step > dt_
+                                            ? ": where rows are missing --resample fills them in"
+                                            : ""));
+}
+
+void FilterRunReader::fill_between(const FilterRow& before, const FilterRow& after) {
+  const auto missing = static_cast<int>(std::round((after.time_s - before.time_s) / dt_)) - 1;
+  for (int k = 1; k <= missing; ++k) {
+    const double share = static_cast<double>(k) / (missing + 1);
+    const auto between = [share](double a, double b) { return a + share * (b - a); };
+    FilterRow row = before;
+    row.line = after.line;
+    row.time_s = between(before.time_s, after.time_s);
+    for (std::size_t w = 0; w < 4; ++w) {
+      row.wheel[w] = between(before.wheel[w], after.wheel[w]);
+      row.steering[w] = between(before.steering[w], after.steering[w]);
+    }
+    row.ax = between(before.ax, after.ax);
+    row.ay = between(before.ay, after.ay);
+    const double turn = rotation_kind_ == Rotation::Heading
+                            ? std::remainder(after.rotation_deg - before.rotation_deg, 360.0)
+                            : after.rotation_deg - before.rotation_deg;
+    row.rotation_deg = before.rotation_deg + share * turn;
+    ahead_.push_back(row);
+    ++filled_;
+  }
 }
 
 bool FilterRunReader::read(FilterRow& row) {
@@ -163,7 +221,7 @@ bool FilterRunReader::read(FilterRow& row) {
   row.line = stream_.line();
   if (time_) {
     row.time_s = stream_.number(*time_);
-    if (read_ > 0) check_time(row.time_s);
+    if (read_ > 0) check_time(row);
     last_time_ = row.time_s;
   }
   for (int i = 0; i < 4; ++i) row.wheel[i] = stream_.number(wheel_[i]);
@@ -177,8 +235,15 @@ bool FilterRunReader::read(FilterRow& row) {
 }
 
 bool FilterRunReader::take(FilterRow& row) {
-  if (ahead_used_ == ahead_count_) return read(row);
-  row = ahead_[ahead_used_++];
+  if (ahead_.empty()) {
+    FilterRow next;
+    if (!read(next)) return false;
+    if (options_.resample && last_row_) fill_between(*last_row_, next);
+    last_row_ = next;
+    ahead_.push_back(next);
+  }
+  row = ahead_.front();
+  ahead_.pop_front();
   return true;
 }
 

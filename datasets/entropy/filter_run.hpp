@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "datasets/csv/csv_stream.hpp"
@@ -31,9 +32,13 @@ struct FilterRunOptions {
   std::string theta = "yaw_step_deg";  // the rotation column that "theta" of the thesis' layout stands for
   bool rotation_as_it_stands = false;  // take whatever the rotation column holds for degrees per step
   bool use_laikas = true;              // as time_s, in the thesis' layout
-  std::optional<double> dt;            // s; without it the first time step
-  double time_tolerance = 0.01;        // of a time step against dt, relative
-  std::int64_t least_rows = 1;         // rows that next() must deliver
+  // s; without it the first time step where those of the first rows agree within 1 %, else their median.
+  std::optional<double> dt;
+  // Of a time step against dt, relative; without it 40 %: stamps of arrival jitter.
+  std::optional<double> time_tolerance;
+  // Where a step is of several dt (up to 10) the rows between are filled in, linearly.
+  bool resample = false;
+  std::int64_t least_rows = 1;                   // rows that next() must deliver
   const std::atomic<bool>* interrupt = nullptr;  // see CsvStream
 };
 
@@ -60,7 +65,11 @@ class FilterRunReader {
   bool has_time() const { return time_.has_value(); }
   bool has_steering() const { return steering_.has_value(); }
   double dt() const { return dt_; }
-  std::int64_t rows() const { return rows_; }  // delivered
+  // Largest |step - dt| that was taken [s], and how many steps were off by more than 1 %.
+  double jitter() const { return jitter_; }
+  std::int64_t jittered() const { return jittered_; }
+  std::int64_t filled() const { return filled_; }  // rows that --resample filled in
+  std::int64_t rows() const { return rows_; }      // delivered
   std::int64_t passed_over() const {
     return passed_over_;
   }  // rows before the first one delivered: 1 for headings
@@ -76,8 +85,9 @@ class FilterRunReader {
   void find_steering(const ColumnFinder& finder);
   void find_dt();
   bool read(FilterRow& row);  // rotation as it stands in the file, but in degrees
-  bool take(FilterRow& row);  // the same, rows read ahead first
-  void check_time(double time);
+  bool take(FilterRow& row);  // the same, rows read ahead and filled in first
+  void fill_between(const FilterRow& before, const FilterRow& after);
+  void check_time(const FilterRow& row);
   [[noreturn]] void too_short(std::int64_t rows) const;
 
   FilterRunOptions options_;
@@ -94,8 +104,10 @@ class FilterRunReader {
   double dt_ = 0;
   double heading_ = 0, last_time_ = 0;
   std::int64_t read_ = 0, rows_ = 0, passed_over_ = 0;
-  std::array<FilterRow, 2> ahead_{};  // read to find dt
-  std::size_t ahead_used_ = 0, ahead_count_ = 0;
+  std::deque<FilterRow> ahead_;  // read to find dt, or filled in
+  std::optional<FilterRow> last_row_;
+  double jitter_ = 0;
+  std::int64_t jittered_ = 0, filled_ = 0;
 };
 
 }  // namespace odobench

@@ -2,7 +2,7 @@
 //   {"seed": 1, "wheels": {"sigma_velocity", "sigma_yaw_rate"}, "start": {"sigma_position", "sigma_heading"},
 //    "sensors": [{"name", "type": "pose|heading|relative_pose|yaw_rate", "rate_hz", "delay_s", "missing",
 //                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...]
-//     (measured: "file": "gyro_{recording}.csv", "columns" and "unit" instead of rate_hz, missing and errors),
+//     (measured: "file": "gyro_{recording}.csv", "columns", "unit" instead of rate_hz, missing, errors),
 //    "gyro_bias": {"initial", "walk"}, "odometry_scale": {...}, "gate_probability", "max_delay_s",
 //    "unscented": {"alpha", "beta", "kappa"}}
 #pragma once

@@ -103,6 +103,9 @@ FilterSetup make_filter_setup(const EntropyOptions& options) {
   reader.dt = options.dt;
   if (published && !reader.dt) reader.dt = setup.constants.dt;
   reader.time_tolerance = options.time_tolerance;
+  reader.resample = options.resample;
+  if (options.resample && !options.truth.empty())
+    throw std::invalid_argument("--resample and --truth: rows that are filled in have no truth");
   reader.least_rows = setup.constants.samples + setup.rows_unused;
   setup.truth_columns = parse_columns("--truth-columns", options.truth_columns, FilterTruthReader::columns());
   return setup;

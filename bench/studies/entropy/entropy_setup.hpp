@@ -27,7 +27,8 @@ struct EntropyOptions {
   std::optional<bool> omega_cross_v;
   std::optional<std::string> wheel_order;  // right-first | left-first
   std::optional<double> dt;                // s; none: from time_s
-  double time_tolerance = 0.01;            // relative
+  std::optional<double> time_tolerance;    // relative; none: as FilterRunOptions has it
+  bool resample = false;                   // fill in rows that are missing
   EntropyConstants constants;              // dt and step_rotation apart
   std::optional<double> step_rotation;     // deg/s^2
   bool gap = false;                        // compare with exact and relaxed

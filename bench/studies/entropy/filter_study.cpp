@@ -17,6 +17,7 @@
 #include "bench/studies/entropy/entropy_search.hpp"
 #include "bench/studies/entropy/entropy_signals.hpp"
 #include "bench/studies/entropy/entropy_statistics.hpp"
+#include "bench/studies/entropy/unit_watch.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 #include "solvers/lattice/ternary_search.hpp"
 
@@ -101,6 +102,7 @@ class FilterRun {
         filter_(profile_, method_.search.get()),
         converter_(setup),
         noise_(setup),
+        units_(setup.constants),
         signals_(!options.truth.empty()),
         rows_(static_cast<std::size_t>(setup.constants.samples)),
         truths_(rows_count()),
@@ -124,6 +126,7 @@ class FilterRun {
     ++count_;
     const ConvertedRow& row = converter_.convert(input.row);
     rows_.push(row);
+    units_.add(row);
     times_.push(input.row.time_s);
     lines_.push(input.row.line);
     if (with_truth_) truths_.push(converter_.convert(input.truth));
@@ -146,6 +149,7 @@ class FilterRun {
 
   RunRecord record(double seconds) const;
   std::int64_t windows() const { return method_meter_.windows(); }
+  std::vector<std::string> suspicions() const { return units_.remarks(); }
   bool slow() const { return method_.registry != nullptr; }
   void commit() {
     if (file_) file_->commit();
@@ -174,6 +178,7 @@ class FilterRun {
   SlidingFilter filter_;
   SampleConverter converter_;
   NoiseMeter noise_;
+  UnitWatch units_;
   SignalMeter signals_;
   MethodMeter method_meter_;
   LastOf<ConvertedRow> rows_;
@@ -252,6 +257,17 @@ void describe_run(const EntropyOptions& options, const FilterSetup& setup, const
   if (run.unfinished) record.notes.push_back("the last line of the file has no line break; it was taken");
 }
 
+std::vector<std::string> timing_notes(const FilterRunReader& data) {
+  std::vector<std::string> notes;
+  if (data.jittered() > 0)
+    notes.push_back(fmt::format(
+        "time_s: {} steps differ from the period of {:g} s, by up to {:.2g} s: taken as jitter of the stamps",
+        data.jittered(), data.dt(), data.jitter()));
+  if (data.filled() > 0)
+    notes.push_back(fmt::format("{} missing rows filled in by --resample", data.filled()));
+  return notes;
+}
+
 }  // namespace
 
 FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue,
@@ -284,6 +300,14 @@ FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue
   if (result.windows == 0) throw Interruption();
   result.record = run.record(seconds_since(begin));
   describe_run(options, setup, result, result.record);
+  for (const std::string& text : run.suspicions()) {
+    watcher.warn(text);
+    result.record.notes.push_back(text);
+  }
+  for (const std::string& text : timing_notes(rows.data())) {
+    watcher.note(text);
+    result.record.notes.push_back(text);
+  }
   result.record.context = run_context(1, kernel);
   result.record.time_utc = begin_utc;
   run.commit();

@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
+#include "bench/studies/exporting/robot_export.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
 #include "bench/studies/importing/log_study.hpp"
 #include "bench/studies/records.hpp"
@@ -45,6 +46,22 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalo
   return runs;
 }
 
+// The controller's YAML of a result, where there is one; the parameters stand in results/parameters, too.
+void write_controller(const CalibrateStudy& study, Calibrated& out, Existing existing, Watcher& watcher) {
+  if (!fs::exists(out.results / "parameters/lm.json")) return;
+  ExportedRobot exported;
+  fs::path file = study.out / "ros2.yaml";
+  try {
+    exported = export_robot({out.results, "ros2", "lm", "", false});
+  } catch (const std::invalid_argument&) {  // no controller knows such a robot
+    exported = export_robot({out.results, "yaml", "lm", "", false});
+    file = study.out / "robot.yaml";
+  }
+  for (const std::string& warning : exported.warnings) watcher.note(warning);
+  write_file(file, exported.text, existing);
+  out.files.push_back(file);
+}
+
 }  // namespace
 
 Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogue, Watcher& watcher,
@@ -55,7 +72,7 @@ Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogu
   if (study.logs.size() == 1 && is_dataset(study.logs.front())) {
     set = study.logs.front();
   } else {
-    for (const char* name : {"map.json", "set.json", "report.html"})
+    for (const char* name : {"map.json", "set.json", "report.html", "ros2.yaml"})
       require_writable(study.out / name, existing, "--out");
     const std::string map = find_map(study, watcher, stop);
     ImportedLogs imported =
@@ -76,6 +93,7 @@ Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogu
              existing);
   out.files.push_back(out.results);
   out.files.push_back(page);
+  write_controller(study, out, existing, watcher);
   out.records = std::move(runs.records);
   return out;
 }
