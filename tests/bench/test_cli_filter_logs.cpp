@@ -1,4 +1,5 @@
-// `bench filter` on logs as people have them: units that their names do not say, stamps of arrival, rows lost.
+// `bench filter`, `fuse` on logs as people have them: units that their names do not say, stamps of arrival,
+// rows lost, sensors of their own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
