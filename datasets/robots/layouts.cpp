@@ -362,8 +362,7 @@ std::string own_name(std::string_view kinematics, std::string_view parameter) {
   struct Alias {
     std::string_view kinematics, theirs, ours;
   };
-  static constexpr std::array<Alias, 9> aliases = {{{"differential", "wheel_separation", "b"},
-                                                    {"differential", "track", "b"},
+  static constexpr std::array<Alias, 8> aliases = {{{"differential", "wheel_separation", "b"},
                                                     {"differential", "left_wheel_radius", "r_left"},
                                                     {"differential", "right_wheel_radius", "r_right"},
                                                     {"skid_steer", "left_wheel_radius", "r_left"},

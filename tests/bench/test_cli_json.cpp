@@ -67,6 +67,9 @@ class CliJson : public ::testing::Test {
     EXPECT_EQ(run_bench({"check", runs, "--baseline=" + path("base.json"), "--update"}).exit_code, 0);
     return {
         {"run", {"run", "--problem=rosenbrock", "--solver=lm", "--quiet"}},
+        {"calibrate",
+         {"calibrate", source("datasets/samples/courier.bag"), "--nominal=b=0.4,r=0.05", "--quiet",
+          "--out=" + path("calibrated")}},
         {"filter", {"filter", "--data=" + folder_.file("f.csv", filter_rows())}},
         {"evaluate", {"evaluate"}},
         {"inspect", {"inspect"}},

@@ -27,9 +27,9 @@ std::vector<std::string> commands_of(const std::string& page) {
 
 TEST(Tutorial, EveryCommandOfThePageWorks) {
   const TemporaryFolder folder;
-  std::filesystem::create_directories(folder / "datasets/demo");
-  std::filesystem::copy_file(source_dir() / "datasets/demo/courier.bag",
-                             folder / "datasets/demo/courier.bag");
+  std::filesystem::create_directories(folder / "datasets/samples");
+  std::filesystem::copy_file(source_dir() / "datasets/samples/courier.bag",
+                             folder / "datasets/samples/courier.bag");
   const std::string bench = std::filesystem::path(bench_words({}).front()).parent_path().string();
   std::string all;
   const std::vector<std::string> commands = commands_of("calibrate.md");

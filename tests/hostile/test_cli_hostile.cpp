@@ -67,7 +67,7 @@ TEST_P(CliHostile, EveryInputHasItsCodeAndItsLine) {
     const TemporaryFolder folder;
     for (const Words& words : format_called(GetParam()).commands(bytes, folder)) {
       const ProcessResult result = bench_in_process(words);
-      EXPECT_EQ(complaint_about(result, folder, bytes), "") << result.err;
+      EXPECT_EQ(complaint_about(result, folder, bytes, format_called(GetParam()).binary), "") << result.err;
       const std::string said = without_folder(result.err, folder);
       if (record != nullptr) {
         json now = one;

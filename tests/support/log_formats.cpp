@@ -114,10 +114,10 @@ std::string db3_log() {
 std::vector<Words> read_log(const std::string& log, const std::string& name, const std::string& map,
                             const TemporaryFolder& folder) {
   const std::string file = folder.file(name, log);
-  return {{"import", file, "--show"},
-          {"import", file, "--propose"},
-          {"import", file, "--map=" + folder.file("map.json", map),
-           "--out=" + (folder / "out/set.json").string(), "--keep-cut", "--overwrite"}};
+  return {{"import", file, "--map=" + folder.file("map.json", map),
+           "--out=" + (folder / "out/set.json").string(), "--keep-cut", "--overwrite"},
+          {"import", file, "--show"},
+          {"import", file, "--propose"}};
 }
 
 Format log_format(const std::string& name, std::function<Examples()> examples, const std::string& map) {
@@ -163,7 +163,7 @@ std::vector<Format> log_formats_read() {
              [](const std::string& bytes, const TemporaryFolder& folder) {
                static const std::string log = mcap_bytes(small_log(RosEncoding::Cdr));
                std::vector<Words> commands = read_log(log, "log.mcap", bytes, folder);
-               commands.erase(commands.begin(), commands.begin() + 2);
+               commands.resize(1);
                return commands;
              }};
   all.push_back(std::move(map));

@@ -15,7 +15,8 @@ using log_import::LogMap;
 
 constexpr double kGrid = 0.01, kSpan = 0.1, kLongestLag = 5, kLeastOverlap = 2;  // s
 constexpr double kLeastRate = 0.1;                                               // rad/s
-constexpr int kSteps = 10;                                                       // kSpan / kGrid
+constexpr double kLongestLog = 5e4;  // s, a grid of whose stamps is made
+constexpr int kSteps = 10;           // kSpan / kGrid
 
 // Headings at begin + k * kGrid.
 struct Heading {
@@ -101,9 +102,18 @@ long lag_of_all(const std::vector<double>& a, const std::vector<double>& b, long
   return best * kSteps;
 }
 
+// Longest curve of the log [s].
+double span(const LogCurves& curves) {
+  double longest = curves.heading.time.back() - curves.heading.time.front();
+  for (const Curve& signal : curves.signals)
+    longest = std::max(longest, signal.time.back() - signal.time.front());
+  return longest;
+}
+
 }  // namespace
 
 std::optional<ClockOffset> clock_offset(const LogMap& map, const LogCurves& curves) {
+  if (!(span(curves) < kLongestLog)) return std::nullopt;
   const Heading reference = reference_heading(curves.heading), wheels = wheel_heading(map, curves);
   const std::vector<double> a = rates(reference), b = rates(wheels);
   const auto turns = [](const std::vector<double>& r) {

@@ -11,10 +11,11 @@
 namespace odobench::log_import {
 namespace {
 
-constexpr double kWindow = 0.25;    // s
-constexpr double kStanding = 0.01;  // rad in a window
-constexpr double kLeft = 0.5;       // s of standing at the ends of a drive
-constexpr double kUsualSteps = 3;   // a gap is longer, where a source is slow
+constexpr double kWindow = 0.25;      // s
+constexpr double kStanding = 0.01;    // rad in a window
+constexpr double kLeft = 0.5;         // s of standing at the ends of a drive
+constexpr double kLongestPart = 2e6;  // s, 23 days
+constexpr double kUsualSteps = 3;     // a gap is longer, where a source is slow
 
 // A gap of this curve is a longer step.
 double longest_step(const Curve& curve, double limit) {
@@ -78,6 +79,9 @@ std::vector<Part> PartFinder::moving(const Part& part, double longest) const {
   std::vector<Part> all;
   std::vector<std::size_t> hints(curves_.signals.size(), 0);
   std::vector<double> before(curves_.signals.size());
+  if (!(part.to - part.from < kLongestPart))
+    throw DataError(fmt::format("{}: a drive of {:.3g} s, expected at most {:.0g}", curves_.id,
+                                part.to - part.from, kLongestPart));
   const auto steps = static_cast<long>(std::ceil((part.to - part.from) / kWindow));
   for (long k = 0; k <= steps; ++k) {
     const double t = std::min(part.to, part.from + static_cast<double>(k) * kWindow);

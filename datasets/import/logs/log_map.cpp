@@ -22,6 +22,8 @@ namespace {
 using csv_import::angle_scale;
 using csv_import::length_scale;
 
+constexpr double kLongestOffset = 4e9;  // s
+
 double positive(const JsonNode& node, double most) {
   const double value = node.number();
   if (!(value > 0) || !(value <= most))
@@ -66,9 +68,11 @@ MappedSource read_source(const JsonNode& node, const std::string& name) {
   } catch (const DataError&) {
     text = false;
   }
-  if (!text)
+  if (!text) {
     source.offset_s = offset.number();
-  else if (offset.text() == "estimate")
+    if (!(std::abs(*source.offset_s) <= kLongestOffset))
+      offset.fail(fmt::format("{}", *source.offset_s), fmt::format("at most {:g} s", kLongestOffset));
+  } else if (offset.text() == "estimate")
     source.offset_s.reset();
   else
     offset.fail('"' + shown(offset.text()) + '"', "a number of seconds or \"estimate\"");

@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kMostDisorder = 1'000'000'000;  // ns
+constexpr std::int64_t kMostDisorder = 1'000'000'000;    // ns
+constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // ns, so that differences of two are numbers
 constexpr std::array<char, 4> kQuaternion = {'x', 'y', 'z', 'w'};
 
 // "pose.orientation.x" of messages, "qx" of tables, whose columns are called by one word.
@@ -105,6 +106,18 @@ Answer read_file_of(const LogMap& map, const fs::path& file, const std::vector<c
   }
 }
 
+[[noreturn]] void refuse_stamp(std::int64_t stamp, const fs::path& file) {
+  throw DataError(
+      fmt::format("{}: a stamp of {} ns, expected times within 146 years of 1970", shown_path(file), stamp));
+}
+
+// Whatever stamps a log has.
+std::int64_t lessened(std::int64_t stamp, std::int64_t by, const fs::path& file) {
+  std::int64_t difference = 0;
+  if (__builtin_sub_overflow(stamp, by, &difference)) refuse_stamp(stamp, file);
+  return difference;
+}
+
 struct Order {
   std::vector<std::size_t> rows;  // in the order of time, each stamp once
   std::size_t repeated = 0, moved = 0;
@@ -117,9 +130,9 @@ Order order_of(const std::vector<std::int64_t>& time, const fs::path& file) {
   std::int64_t latest = std::numeric_limits<std::int64_t>::min();
   for (std::size_t k = 0; k < time.size(); ++k) {
     if (k > 0 && time[k] < latest) {
-      if (latest - time[k] > kMostDisorder)
+      if (const std::int64_t back = lessened(latest, time[k], file); back > kMostDisorder)
         throw DataError(fmt::format("{}: row {}: time goes back by {:.3f} s", shown_path(file), k + 1,
-                                    static_cast<double>(latest - time[k]) * 1e-9));
+                                    static_cast<double>(back) * 1e-9));
       ++order.moved;
     }
     latest = std::max(latest, time[k]);
@@ -138,7 +151,7 @@ void measure_delay(const LogTable& table, SourceRows& rows) {
   if (table.log_time_ns.size() != table.time_ns.size() || table.time_ns.empty()) return;
   std::vector<double> delay(table.time_ns.size());
   for (std::size_t k = 0; k < delay.size(); ++k)
-    delay[k] = static_cast<double>(table.time_ns[k] - table.log_time_ns[k]) * 1e-9;
+    delay[k] = (static_cast<double>(table.time_ns[k]) - static_cast<double>(table.log_time_ns[k])) * 1e-9;
   const auto at_share = [&](double share) {
     const auto nth =
         delay.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(delay.size() - 1));
@@ -173,7 +186,9 @@ SourceRows rows_of(const LogTable& table, const LogRequest& request, const Mappe
   }
   measure_delay(table, rows);
   if (const double offset = source.offset_s.value_or(0); offset != 0)
-    for (std::int64_t& t : rows.time_ns) t -= std::llround(offset * 1e9);
+    for (std::int64_t& t : rows.time_ns) t = lessened(t, std::llround(offset * 1e9), file);
+  for (const std::int64_t t : rows.time_ns)
+    if (t > kLatest || t < -kLatest) refuse_stamp(t, file);
   return rows;
 }
 

@@ -10,6 +10,7 @@
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
 #include "reports/kinds/calibration/drive_tables.hpp"
+#include "reports/kinds/calibration/fit_table.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
@@ -83,6 +84,7 @@ Section errors(const std::vector<Comparison>& comparisons, Document& document) {
     else
       append(error_tables(c), section);
     append(drive_tables(c), section);
+    append_if(fit_table(c), section);
     add_end_figure(c, prefix_of(c), section, document);
   }
   return section;
