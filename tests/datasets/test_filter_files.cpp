@@ -320,7 +320,6 @@ TEST(FilterRun, Refuses) {
 TEST(FilterRun, ThePeriodIsTheMedianStepWhereStampsJitter) {
   FilterRunOptions options;
   options.least_rows = 10;
-  // The first step is 0.12 s, the second 0.08 s.
   const std::vector<FilterRow> rows = read_run(replaced(plain_run(12), "\n0.10,", "\n0.12,"), options);
   EXPECT_EQ(rows.size(), 12u);
   options.time_tolerance = 0.01;
