@@ -320,8 +320,7 @@ TEST(FilterRun, Refuses) {
 TEST(FilterRun, ThePeriodIsTheMedianStepWhereStampsJitter) {
   FilterRunOptions options;
   options.least_rows = 10;
-  const std::vector<FilterRow> rows = read_run(replaced(plain_run(12), "\n0.10,", "\n0.12,"), options);
-  EXPECT_EQ(rows.size(), 12u);
+  EXPECT_EQ(read_run(replaced(plain_run(12), "\n0.10,", "\n0.12,"), options).size(), 12u);
   options.time_tolerance = 0.01;
   EXPECT_TRUE(says(data_error([&] { read_run(replaced(plain_run(12), "\n0.10,", "\n0.12,"), options); }),
                    {"found a time step of 0.08 s, expected 0.12 s within 1 %"}));
@@ -330,8 +329,7 @@ TEST(FilterRun, ThePeriodIsTheMedianStepWhereStampsJitter) {
 TEST(FilterRun, MissingRowsAreFilledInOnRequest) {
   std::string run = plain_run(12);
   const std::size_t at = run.find("\n0.50,");
-  const std::size_t end = run.find('\n', at + 1);
-  run.erase(at, end - at);
+  run.erase(at, run.find('\n', at + 1) - at);
   EXPECT_TRUE(
       says(data_error([&] { read_run(run); }), {"found a time step of 0.2 s", "--resample fills them in"}));
   FilterRunOptions options;

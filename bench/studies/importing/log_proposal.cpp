@@ -21,7 +21,7 @@
 namespace odobench {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using MapJson = nlohmann::ordered_json;
 using log_import::LogCurves;
 using log_import::LogMap;
 using log_import::Role;
@@ -30,8 +30,8 @@ using log_import::SurveyedSource;
 
 constexpr int kStandInCounts = 1000;  // per turn, while nobody has said it
 
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+MapJson text_or_null(const std::string& text) {
+  return text.empty() ? MapJson(nullptr) : MapJson(text);
 }
 
 // A map is text: what it could not name is left out.
@@ -89,11 +89,11 @@ class Proposer {
     names_[number] = name;
   }
 
-  Json sources() const {
-    Json all = Json::object();
+  MapJson sources() const {
+    MapJson all = MapJson::object();
     for (const auto& [number, name] : names_) {
       const SurveyedSource& surveyed = sources_[number];
-      Json source = Json::object();
+      MapJson source = MapJson::object();
       if (!surveyed.source.name.empty()) source["topic"] = surveyed.source.name;
       if (!surveyed.files.empty()) source["files"] = surveyed.files;
       for (const LogField& field : surveyed.source.fields)
@@ -104,8 +104,8 @@ class Proposer {
     return all;
   }
 
-  Json of(const Role& role) const {
-    Json json = {{"source", names_.at(role.source)}};
+  MapJson of(const Role& role) const {
+    MapJson json = {{"source", names_.at(role.source)}};
     if (role.quaternion.empty())
       json["field"] = role.field;
     else
@@ -114,13 +114,13 @@ class Proposer {
   }
 
   // `stand_in`: with numbers where only the user knows.
-  Json signals(bool stand_in) const {
-    Json all = Json::object();
+  MapJson signals(bool stand_in) const {
+    MapJson all = MapJson::object();
     for (const Role& role : roles_.wheels) {
-      Json json = of(role);
+      MapJson json = of(role);
       json["unit"] = text_or_null(role.unit);
-      if (role.unit == "count") json["per_turn"] = stand_in ? Json(kStandInCounts) : Json(nullptr);
-      if (role.kind == "travel") json["radius"] = stand_in ? Json(1.0) : Json(nullptr);
+      if (role.unit == "count") json["per_turn"] = stand_in ? MapJson(kStandInCounts) : MapJson(nullptr);
+      if (role.kind == "travel") json["radius"] = stand_in ? MapJson(1.0) : MapJson(nullptr);
       if (const int sign = signs_.at(role.which); sign < 0) json["sign"] = sign;
       const char* head = role.kind == "speed"    ? "wheel_speed"
                          : role.kind == "travel" ? "wheel_travel"
@@ -128,18 +128,18 @@ class Proposer {
       all[role.which.empty() ? std::string(head) : fmt::format("{}.{}", head, role.which)] = std::move(json);
     }
     for (const Role& role : roles_.steering) {
-      Json json = of(role);
+      MapJson json = of(role);
       json["unit"] = text_or_null(role.unit.empty() && stand_in ? "rad" : role.unit);
-      if (role.unit == "count") json["per_turn"] = stand_in ? Json(kStandInCounts) : Json(nullptr);
+      if (role.unit == "count") json["per_turn"] = stand_in ? MapJson(kStandInCounts) : MapJson(nullptr);
       all[role.which.empty() ? std::string("steering") : "steering." + role.which] = std::move(json);
     }
     for (const Role& role : roles_.reference) {
-      Json json = of(role);
+      MapJson json = of(role);
       json["unit"] = role.unit;
       all["reference." + role.which] = std::move(json);
     }
     for (const Role& role : roles_.gyro) {
-      Json json = of(role);
+      MapJson json = of(role);
       json["unit"] = role.unit;
       json["optional"] = true;
       all["gyro.z"] = std::move(json);
@@ -147,19 +147,20 @@ class Proposer {
     return all;
   }
 
-  Json robot(bool stand_in) const {
-    Json parameters = Json::array();
+  MapJson robot(bool stand_in) const {
+    MapJson parameters = MapJson::array();
     if (!roles_.kinematics.empty())
       for (const BoundParameter& p : robots::make_robot(robots::layout(roles_.kinematics)).parameters)
         parameters.push_back(
             {{"name", p.parameter.name},
-             {"nominal", p.parameter.unit == "m" && !stand_in ? Json(nullptr) : Json(p.parameter.nominal)}});
+             {"nominal",
+              p.parameter.unit == "m" && !stand_in ? MapJson(nullptr) : MapJson(p.parameter.nominal)}});
     return {
         {"name", "my_robot"}, {"kinematics", text_or_null(roles_.kinematics)}, {"parameters", parameters}};
   }
 
-  Json map(bool stand_in) const {
-    Json all = {{"schema", "odobench-import"}, {"schema_version", 1}, {"name", "my_robot"}};
+  MapJson map(bool stand_in) const {
+    MapJson all = {{"schema", "odobench-import"}, {"schema_version", 1}, {"name", "my_robot"}};
     all["robot"] = robot(stand_in);
     all["sources"] = sources();
     all["signals"] = signals(stand_in);

@@ -18,25 +18,26 @@
 namespace odobench {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using MapJson = nlohmann::ordered_json;
 
 // "r" of r_left and of r1: one value for all wheels.
 std::string kind_of(const std::string& parameter) {
   return parameter.substr(0, parameter.find_first_of("_0123456789"));
 }
 
-Json parameters_of(const std::string& kinematics) {
-  Json parameters = Json::array();
+MapJson parameters_of(const std::string& kinematics) {
+  MapJson parameters = MapJson::array();
   for (const BoundParameter& p : robots::make_robot(robots::layout(kinematics)).parameters)
-    parameters.push_back({{"name", p.parameter.name},
-                          {"nominal", p.parameter.unit == "m" ? Json(nullptr) : Json(p.parameter.nominal)}});
+    parameters.push_back(
+        {{"name", p.parameter.name},
+         {"nominal", p.parameter.unit == "m" ? MapJson(nullptr) : MapJson(p.parameter.nominal)}});
   return parameters;
 }
 
 void refuse_unused(const std::set<std::string>& used, const std::map<std::string, double>& nominal,
-                   const Json& parameters) {
+                   const MapJson& parameters) {
   std::vector<std::string> known;
-  for (const Json& p : parameters) known.push_back(p.at("name").get<std::string>());
+  for (const MapJson& p : parameters) known.push_back(p.at("name").get<std::string>());
   for (const auto& [name, value] : nominal)
     if (!used.contains(name))
       throw std::invalid_argument(fmt::format("--nominal: found '{}'{}, expected parameters of the robot: {}",
@@ -63,8 +64,8 @@ std::map<std::string, double> parse_nominal(const std::string& option, const std
 }
 
 std::string fill_map(const std::string& proposed, const MapAnswers& answers) {
-  Json map = Json::parse(proposed);
-  Json& robot = map["robot"];
+  MapJson map = MapJson::parse(proposed);
+  MapJson& robot = map["robot"];
   if (!answers.name.empty()) map["name"] = robot["name"] = answers.name;
   if (!answers.robot.empty() && robot["kinematics"] != robot_class(answers.robot)) {
     robot["kinematics"] = robot_class(answers.robot);
@@ -79,7 +80,7 @@ std::string fill_map(const std::string& proposed, const MapAnswers& answers) {
         value;
   std::set<std::string> used;
   std::vector<std::string> lengths;
-  for (Json& p : robot["parameters"]) {
+  for (MapJson& p : robot["parameters"]) {
     const std::string name = p.at("name").get<std::string>();
     for (const std::string& key : {kind_of(name), name})  // the single one goes before its kind
       if (const auto found = nominal.find(key); found != nominal.end()) {

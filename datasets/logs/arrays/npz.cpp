@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostMembers = 65'536;
 constexpr std::uint64_t kLongestEnd = 22 + 65'535;  // of a zip file: its last record with a comment
 
-std::uint64_t little_endian(std::string_view bytes, std::size_t at, std::size_t count) {
+std::uint64_t zip_number(std::string_view bytes, std::size_t at, std::size_t count) {
   std::uint64_t value = 0;
   for (std::size_t i = count; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
   return value;
@@ -83,15 +83,15 @@ class ZipFile {
     const std::size_t at = tail.rfind("PK\x05\x06");
     if (at == std::string::npos || tail.size() - at < 22)
       throw DataError(name_ + ": found no directory at the end of the zip archive: it is cut off");
-    count_ = little_endian(tail, at + 10, 2);
-    directory_ = little_endian(tail, at + 16, 4);
+    count_ = zip_number(tail, at + 10, 2);
+    directory_ = zip_number(tail, at + 16, 4);
     if ((count_ == 0xFFFF || directory_ == 0xFFFFFFFF) && at >= 20 &&
         tail.compare(at - 20, 4, "PK\x06\x07") == 0) {
-      const std::string end = take(little_endian(tail, at - 12, 8), 56, "a zip64 record");
+      const std::string end = take(zip_number(tail, at - 12, 8), 56, "a zip64 record");
       if (end.compare(0, 4, "PK\x06\x06") != 0)
         throw DataError(name_ + ": found no zip64 record where it should be");
-      count_ = little_endian(end, 32, 8);
-      directory_ = little_endian(end, 48, 8);
+      count_ = zip_number(end, 32, 8);
+      directory_ = zip_number(end, 48, 8);
     }
   }
 
@@ -102,31 +102,31 @@ class ZipFile {
       throw DataError(
           fmt::format("{}: byte {}: found no entry of the directory of the zip archive", name_, at));
     ZipMember member;
-    member.flags = little_endian(fixed, 8, 2);
-    member.method = little_endian(fixed, 10, 2);
-    member.crc = little_endian(fixed, 16, 4);
-    member.packed = little_endian(fixed, 20, 4);
-    member.size = little_endian(fixed, 24, 4);
-    member.offset = little_endian(fixed, 42, 4);
-    const std::size_t name = little_endian(fixed, 28, 2), extra = little_endian(fixed, 30, 2);
+    member.flags = zip_number(fixed, 8, 2);
+    member.method = zip_number(fixed, 10, 2);
+    member.crc = zip_number(fixed, 16, 4);
+    member.packed = zip_number(fixed, 20, 4);
+    member.size = zip_number(fixed, 24, 4);
+    member.offset = zip_number(fixed, 42, 4);
+    const std::size_t name = zip_number(fixed, 28, 2), extra = zip_number(fixed, 30, 2);
     const std::string text = take(at + 46, name + extra, "a name");
     member.name = text.substr(0, name);
     read_zip64(std::string_view(text).substr(name), member);
-    at += 46 + name + extra + little_endian(fixed, 32, 2);
+    at += 46 + name + extra + zip_number(fixed, 32, 2);
     return member;
   }
 
   // Sizes that do not fit into 32 bits stand in the extra field 1, in this order.
   static void read_zip64(std::string_view extra, ZipMember& member) {
     while (extra.size() >= 4) {
-      const std::uint64_t id = little_endian(extra, 0, 2);
-      const std::size_t size = little_endian(extra, 2, 2);
+      const std::uint64_t id = zip_number(extra, 0, 2);
+      const std::size_t size = zip_number(extra, 2, 2);
       extra.remove_prefix(4);
       if (size > extra.size()) return;
       std::string_view field = extra.substr(0, size);
       for (std::uint64_t* value : {&member.size, &member.packed, &member.offset}) {
         if (id != 1 || *value != 0xFFFFFFFF || field.size() < 8) continue;
-        *value = little_endian(field, 0, 8);
+        *value = zip_number(field, 0, 8);
         field.remove_prefix(8);
       }
       extra.remove_prefix(size);
@@ -146,7 +146,7 @@ class ZipFile {
     const std::string local = take(member.offset, 30, "a member");
     if (local.compare(0, 4, "PK\x03\x04") != 0)
       throw DataError(fmt::format("{}: found no member at byte {}", place, member.offset));
-    bytes_.seek(member.offset + 30 + little_endian(local, 26, 2) + little_endian(local, 28, 2));
+    bytes_.seek(member.offset + 30 + zip_number(local, 26, 2) + zip_number(local, 28, 2));
     LimitedBytes packed(bytes_, member.packed);
     const std::string array = member.name.substr(0, member.name.size() - 4);
     if (member.method == 0)
@@ -175,7 +175,7 @@ class ZipFile {
 // A zip archive that begins with an array: spreadsheets are zip archives too.
 bool is_npz(const fs::path&, const std::string& head) {
   if (head.size() < 30 || head.substr(0, 4) != "PK\x03\x04") return head.substr(0, 4) == "PK\x05\x06";
-  const std::string_view name = std::string_view(head).substr(30, little_endian(head, 26, 2));
+  const std::string_view name = std::string_view(head).substr(30, zip_number(head, 26, 2));
   return name.size() > 4 && name.substr(name.size() - 4) == ".npy";
 }
 
