@@ -19,9 +19,10 @@ std::mutex& ipopt_mutex() {
   return mutex;
 }
 
-// A sum of squares cannot fall below zero.
+// A sum of squares cannot fall below zero, nor below what the problem itself states as rounding.
 bool exact_fit(const Run& run) {
-  return run.best_cost() == 0 && run.problem().has_normal_equations();
+  if (!run.has_best() || !run.problem().has_normal_equations()) return false;
+  return run.best_cost() == 0 || run.best_cost() <= run.problem().rounding_floor(run.best_parameters());
 }
 
 // Leaves Ipopt's code for the duration of a call-back. Declared before anything whose destruction could
@@ -328,7 +329,9 @@ Outcome InteriorPoint::minimise(Run& run) const {
     const double before = run.best_cost();
     const Outcome ended = start_once(run, options_, iterations, start > 0);
     if (run.stop()) return {};
-    if (exact_fit(run)) return {Termination::Settled, "cost 0: an exact fit"};
+    if (exact_fit(run))
+      return {Termination::Settled,
+              fmt::format("cost {:.2g}: an exact fit, as far as rounding lets it be", run.best_cost())};
     // What Ipopt has reached once stays reached when a further start breaks down.
     if (start == 0 || ended.termination != Termination::Failed) outcome = ended;
     if (ended.termination == Termination::Failed || before == 0) return outcome;
