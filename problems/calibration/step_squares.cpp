@@ -11,16 +11,20 @@ StepSquares::StepSquares() {
   squares_.setZero();
 }
 
-void StepSquares::add(const Steering& cs, const Steering& heading) {
+void StepSquares::add(const double* cs, const double* heading) {
   if (filled_ == kRows) reduce();
-  for (Index a = 0, pair = 0; a < kWheels; ++a)
+  double* real = real_.data() + filled_ * kPairs;
+  double* imaginary = imaginary_.data() + filled_ * kWheels * kWheels;
+  double* product = products_.data() + filled_ * kProducts;
+  double* f = heading_.data() + filled_ * kHeading;
+  for (Index a = 0; a < kWheels; ++a)
     for (Index b = 0; b < kWheels; ++b) {
-      imaginary_(filled_, a * kWheels + b) = cs[4 + a] * cs[b] - cs[a] * cs[4 + b];
-      if (b <= a) real_(filled_, pair++) = cs[a] * cs[b] + cs[4 + a] * cs[4 + b];
+      *imaginary++ = cs[4 + a] * cs[b] - cs[a] * cs[4 + b];
+      if (b <= a) *real++ = cs[a] * cs[b] + cs[4 + a] * cs[4 + b];
     }
-  for (Index i = 0, product = 0; i < kHeading; ++i) {
-    heading_(filled_, i) = heading[i];
-    for (Index j = 0; j <= i; ++j) products_(filled_, product++) = heading[i] * heading[j];
+  for (Index i = 0; i < kHeading; ++i) {
+    f[i] = heading[i];
+    for (Index j = 0; j <= i; ++j) *product++ = heading[i] * heading[j];
   }
   ++filled_;
 }

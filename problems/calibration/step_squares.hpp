@@ -19,12 +19,11 @@ namespace odobench {
 
 class StepSquares {
  public:
-  using Steering = Eigen::Matrix<double, kernel::kHeading, 1>;
   using Squares = Eigen::Matrix<double, kernel::kLinear, kernel::kLinear>;
 
   StepSquares();
-  // cs: (C_1..C_4, S_1..S_4) of a step, rad; heading: f before it.
-  void add(const Steering& cs, const Steering& heading);
+  // cs: (C_1..C_4, S_1..S_4) of a step, rad; heading: f before it (8 numbers each).
+  void add(const double* cs, const double* heading);
   // After the last step.
   void finish() { reduce(); }
   // Sum of d d' at the linear parameters s (12), their first four r, m.
@@ -36,11 +35,13 @@ class StepSquares {
   static constexpr Eigen::Index kWheels = 4, kPairs = kWheels * (kWheels + 1) / 2;
   static constexpr Eigen::Index kProducts = kernel::triangle(kernel::kHeading), kRows = 256;
   // Of the steps since the last reduction: Re(w_a conj w_b) for b <= a, Im(w_a conj w_b) for all, f, and f
-  // f'.
-  Eigen::Matrix<double, kRows, kPairs> real_;
-  Eigen::Matrix<double, kRows, kWheels * kWheels> imaginary_;
-  Eigen::Matrix<double, kRows, kernel::kHeading> heading_;
-  Eigen::Matrix<double, kRows, kProducts> products_;
+  // f'. Step by step, as they are written.
+  template <Eigen::Index Columns>
+  using Rows = Eigen::Matrix<double, kRows, Columns, Eigen::RowMajor>;
+  Rows<kPairs> real_;
+  Rows<kWheels * kWheels> imaginary_;
+  Rows<kernel::kHeading> heading_;
+  Rows<kProducts> products_;
   Eigen::Index filled_ = 0;
   // Sums of their products.
   Eigen::Matrix<double, kPairs, 1> wheels_;

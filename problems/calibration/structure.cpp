@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace odobench {
 namespace {
@@ -17,17 +18,24 @@ using kernel::kStreams;
 // cache.
 constexpr long kSegmentSteps = 256;
 
-// (C_1..C_4, S_1..S_4), one column per increment.
+// (C_1..C_4, S_1..S_4), one column per increment. Steering that stays keeps its sine and cosine.
 Increments increments_of(const Recording& recording) {
   Increments list(kHeading, static_cast<Eigen::Index>(recording.size()) - 1);
-  for (Eigen::Index c = 0; c < list.cols(); ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
-    for (std::size_t i = 0; i < kWheelCount; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const double turn = 0.25 * dt * wheel_speed_of(recording, i)[k];
-      list(row, c) = turn * std::cos(steering_of(recording, i)[k]);
-      list(row + 4, c) = turn * std::sin(steering_of(recording, i)[k]);
+  for (std::size_t i = 0; i < kWheelCount; ++i) {
+    const std::vector<double>&speed = wheel_speed_of(recording, i), &steering = steering_of(recording, i);
+    const auto row = static_cast<Eigen::Index>(i);
+    double last = std::numeric_limits<double>::quiet_NaN(), c = 0, s = 0;
+    for (Eigen::Index column = 0; column < list.cols(); ++column) {
+      const auto k = static_cast<std::size_t>(column);
+      const double dt = static_cast<double>(recording.time_us[k + 1] - recording.time_us[k]) * 1e-6;
+      if (steering[k] != last) {
+        last = steering[k];
+        c = std::cos(last);
+        s = std::sin(last);
+      }
+      const double turn = 0.25 * dt * speed[k];
+      list(row, column) = turn * c;
+      list(row + 4, column) = turn * s;
     }
   }
   return list;
@@ -141,22 +149,24 @@ void CalibrationStructure::plan_recording(const Recording& recording, const Incr
   RecordingPlan plan;
   plan.theta0 = recording.reference.theta[0];
   long next = 0;
-  HeadingVector heading = HeadingVector::Zero();
+  // Plain numbers: vectors of Eigen would be stored in halves and loaded whole, which stalls.
+  double heading[kHeading] = {};
   const auto add_block = [&](int width, long length) {
     BlockPlan block{width, length, data_.size(), plan.segments.size()};
     data_.resize(data_.size() + static_cast<std::size_t>(length * kStreams * width));
     for (int lane = 0; lane < width; ++lane) {
       const auto first = static_cast<std::size_t>(next);
-      plan.segments.push_back({length, heading, recording.reference.x[first], recording.reference.y[first]});
+      plan.segments.push_back({length, Eigen::Map<const HeadingVector>(heading), recording.reference.x[first],
+                               recording.reference.y[first]});
       for (long k = 0; k < length; ++k, ++next) {
         const auto sample = static_cast<std::size_t>(next);
-        const HeadingVector cs = list.col(next);
+        const double* cs = list.data() + next * kHeading;
         double* row = &data_[block.data + static_cast<std::size_t>(k * kStreams * width + lane)];
-        for (Eigen::Index j = 0; j < kHeading; ++j) row[j * width] = cs[j];
+        for (int j = 0; j < kHeading; ++j) row[j * width] = cs[j];
         row[8 * width] = recording.reference.x[sample + 1] - recording.reference.x[first];
         row[9 * width] = recording.reference.y[sample + 1] - recording.reference.y[first];
         if ((length - k) % 2 == 1) squares_.add(cs, heading);
-        heading += heading_increment(cs);
+        for (int j = 0; j < kHeading; ++j) heading[j] += j < 4 ? -cs[j] : cs[j];
       }
     }
     plan.blocks.push_back(block);
