@@ -88,7 +88,7 @@ ExitCode calibrate_command(const CalibrateOptions& options, const Catalogue& cat
   TerminalWatcher watcher(options.quiet);
   const Calibrated done = calibrate_logs(study_of(options), catalogue, watcher, InterruptGuard::stop());
   std::vector<Table> tables = comparison_tables(done.records, notes_of_best(done.records));
-  static const std::set<std::string> shown_here = {"parameters", "totals", "solvers"};
+  static const std::set<std::string> shown_here = {"parameters", "totals", "fit"};
   std::erase_if(tables, [](const Table& table) { return !shown_here.contains(table.id); });
   print_tables(tables, format);
   for (const std::filesystem::path& file : done.files) note(file.string());

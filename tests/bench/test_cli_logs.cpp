@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/data/drive_log.hpp"
@@ -185,6 +186,38 @@ TEST_F(CliLogs, ClocksThatDifferAreSaidAndNotTouched) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("runs 0.137 s ahead of the wheels"));
   EXPECT_THAT(run.err, HasSubstr("not applied"));
+}
+
+// A steered and driven front wheel 0.82 m ahead, radius 98.5 mm, whose steering reads 0.013 rad too little.
+std::string tricycle_table() {
+  double x = 0, y = 0, theta = 0, angle = 0;
+  std::string csv = "time_s,traction_rad,steering_deg,x_mm,y_mm,yaw_deg\n";
+  for (int k = 0; k <= 40000; ++k) {
+    const double t = 1e-3 * k, degree = 3.14159265358979 / 180;
+    const bool drives = t > 1 && t < 39;
+    const double v = drives ? 0.02 + 0.5 * std::pow(std::sin((t - 1) * 3.14159265358979 / 38), 2) : 0;
+    const double steering = drives ? 0.5 * std::sin((t - 1) / 2) : 0;
+    if (k % 20 == 0)
+      csv += fmt::format("{:.3f},{:.6f},{:.5f},{:.3f},{:.3f},{:.4f}\n", t, angle, (steering - 0.013) / degree,
+                         1e3 * x, 1e3 * y, theta / degree);
+    const double turn = v * std::sin(steering) / 0.82 * 1e-3, middle = theta + turn / 2;
+    x += v * std::cos(steering) * std::cos(middle) * 1e-3;
+    y += v * std::cos(steering) * std::sin(middle) * 1e-3;
+    theta += turn;
+    angle += v / 0.0985 * 1e-3;
+  }
+  return csv;
+}
+
+TEST_F(CliLogs, CalibratesATricycleFromOneTable) {
+  const ProcessResult run = run_bench({"calibrate", folder_.file("drive.csv", tricycle_table()),
+                                       "--nominal=wheelbase=0.8,r=0.1", "--out=" + out()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::map<std::string, double> found = calibrated(folder_ / "out/results");
+  EXPECT_NEAR(found.at("wheelbase"), 0.82, 1e-3 * 0.82);
+  EXPECT_NEAR(found.at("r"), 0.0985, 1e-3 * 0.0985);
+  EXPECT_NEAR(found.at("steering_zero"), 0.013, 2e-4);
+  EXPECT_THAT(content(folder_ / "out/ros2.yaml"), HasSubstr("wheel_radius: 0.0985"));
 }
 
 // The sample drive in all formats; true: 0.4120, 0.05040, 0.04985 m.

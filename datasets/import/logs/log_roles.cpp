@@ -180,8 +180,9 @@ Roles find_roles(const std::vector<SurveyedSource>& sources) {
   roles.steering = best.steering;
   roles.by_place = best.by_place;
   const auto say = [&](const Role& role, const char* what) {
-    roles.reasons.push_back(fmt::format("{}{}{}: {} {}, {}", what, role.which.empty() ? "" : ".", role.which,
-                                        shown(sources[of].source.name), shown(role.field),
+    const std::string& name = sources[of].source.name;
+    roles.reasons.push_back(fmt::format("{}{}{}: {}{}{}, {}", what, role.which.empty() ? "" : ".", role.which,
+                                        shown(name), name.empty() ? "" : " ", shown(role.field),
                                         role.unit.empty() ? "unit unknown: null" : role.unit));
   };
   for (const Role& role : roles.wheels) say(role, "wheel");
