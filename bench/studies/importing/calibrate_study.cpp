@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "bench/catalogue/option_values.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/exporting/robot_export.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
@@ -66,7 +67,7 @@ void write_controller(const CalibrateStudy& study, Calibrated& out, Existing exi
 
 Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogue, Watcher& watcher,
                           const Stop& stop) {
-  const Existing existing = study.overwrite ? Existing::Replace : Existing::Refuse;
+  const Existing existing = existing_files(study.overwrite);
   Calibrated out;
   fs::path set = study.out / "set.json";
   if (study.logs.size() == 1 && is_dataset(study.logs.front())) {

@@ -170,14 +170,9 @@ class Proposer {
     return all;
   }
 
-  LogCurves curves() const {
-    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
-    return read_curves(own, group_logs(own, logs_).front(), options_, stop_);
-  }
-
   void look_at_drives() {
-    LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
-    LogCurves read = curves();
+    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
+    const LogCurves read = read_curves(own, group_logs(own, logs_).front(), options_, stop_);
     const bool clocks = roles_.wheels.front().source != roles_.reference.front().source;
     std::optional<ClockOffset> offset = clock_offset(own, read);
     if (roles_.kinematics == "differential") {

@@ -14,19 +14,29 @@
 #include "datasets/native/robot_json.hpp"
 
 namespace odobench::csv_import {
-namespace {
 
-using Kind = SignalFormat::Kind;
-
-constexpr int kRobotSchema = 2;
-
-// JsonNode::allow_only() with the nearest key.
 void allow_only(const JsonNode& node, const std::vector<std::string>& known) {
   for (const std::string& key : node.keys())
     if (std::find(known.begin(), known.end(), key) == known.end())
       node.fail(fmt::format("unknown key \"{}\"{}", shown(key), did_you_mean(key, known)),
                 fmt::format("{}", fmt::join(known, ", ")));
 }
+
+void check_map_schema(const JsonNode& root, const std::vector<std::string>& known) {
+  const JsonNode schema = root.at("schema");
+  if (schema.text() != kMapSchema)
+    schema.fail('"' + shown(schema.text()) + '"', fmt::format("\"{}\"", kMapSchema));
+  const JsonNode version = root.at("schema_version");
+  if (version.integer() != kMapSchemaVersion)
+    version.fail(fmt::format("version {}", version.integer()), fmt::format("{}", kMapSchemaVersion));
+  allow_only(root, known);
+}
+
+namespace {
+
+using Kind = SignalFormat::Kind;
+
+constexpr int kRobotSchema = 2;
 
 std::string not_empty(const JsonNode& node) {
   const std::string text = node.text();
@@ -138,17 +148,6 @@ NamedDrive read_drive(const JsonNode& node) {
   return drive;
 }
 
-void check_schema(const JsonNode& root) {
-  const JsonNode schema = root.at("schema");
-  if (schema.text() != kMapSchema)
-    schema.fail('"' + shown(schema.text()) + '"', fmt::format("\"{}\"", kMapSchema));
-  const JsonNode version = root.at("schema_version");
-  if (version.integer() != kMapSchemaVersion)
-    version.fail(fmt::format("version {}", version.integer()), fmt::format("{}", kMapSchemaVersion));
-  allow_only(root, {"schema", "schema_version", "name", "description", "source", "licence", "robot", "time",
-                    "reference", "signals", "csv", "trajectories"});
-}
-
 }  // namespace
 
 std::optional<int> time_digits(std::string_view unit) {
@@ -187,7 +186,8 @@ std::vector<NeededSignal> needed_signals(const Robot& robot) {
 
 CsvMap parse_csv_map(std::string_view text, const std::string& file) {
   const JsonNode root = JsonNode::parse(text, file);
-  check_schema(root);
+  check_map_schema(root, {"schema", "schema_version", "name", "description", "source", "licence", "robot",
+                          "time", "reference", "signals", "csv", "trajectories"});
   CsvMap map;
   map.file = file;
   map.name = not_empty(root.at("name"));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json_node.hpp"
 #include "datasets/native/signal_format.hpp"
 #include "datasets/robots/robot.hpp"
 
@@ -58,6 +59,11 @@ struct NeededSignal {
   bool steering = false;
 };
 std::vector<NeededSignal> needed_signals(const Robot& robot);
+
+// JsonNode::allow_only() with the nearest key.
+void allow_only(const JsonNode& node, const std::vector<std::string>& known);
+// Schema and version of a map, tables' or logs', and no other keys than these.
+void check_map_schema(const JsonNode& root, const std::vector<std::string>& known);
 
 // Throws DataError "file: /place: found ..., expected ..." for broken JSON, unknown keys (with the nearest
 // known one), null and other types, wrong units, a robot that read_robot() refuses, signals that the robot

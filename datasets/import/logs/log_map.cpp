@@ -32,7 +32,7 @@ double positive(const JsonNode& node, double most) {
 }
 
 void read_format(const JsonNode& node, LogOptions& format) {
-  allow_keys(node, {"separator", "decimal", "comment", "header_rows", "encoding"});
+  csv_import::allow_only(node, {"separator", "decimal", "comment", "header_rows", "encoding"});
   format.separator = node.text_or_empty("separator");
   format.decimal = node.text_or_empty("decimal");
   format.comment = node.text_or_empty("comment");
@@ -47,7 +47,8 @@ MappedSource read_source(const JsonNode& node, const std::string& name) {
     source.topic = node.text();
     return source;
   }
-  allow_keys(node, {"topic", "struct", "prefix", "files", "format", "time", "time_unit", "offset_s"});
+  csv_import::allow_only(node,
+                         {"topic", "struct", "prefix", "files", "format", "time", "time_unit", "offset_s"});
   int given = 0;
   for (const char* key : {"topic", "struct", "prefix"})
     if (node.has(key)) {
@@ -86,7 +87,7 @@ void read_sources(const JsonNode& node, LogMap& map) {
 
 MappedField read_reference(const JsonNode& node, const std::string& target, const LogMap& map) {
   const bool angle = target == "reference.heading";
-  allow_keys(node, {"source", "field", "quaternion", "unit", "sign", "offset"});
+  csv_import::allow_only(node, {"source", "field", "quaternion", "unit", "sign", "offset"});
   MappedField field = read_field(node, target, map);
   const std::string unit = node.has("unit") ? node.at("unit").text() : angle ? "rad" : "m";
   const std::optional<double> scale = angle ? angle_scale(unit) : length_scale(unit);
@@ -139,7 +140,7 @@ void read_mount(const JsonNode& node, LogMap& map) {
     map.estimate_mount = true;
     return;
   }
-  allow_keys(node, {"x", "y", "yaw", "yaw_deg"});
+  csv_import::allow_only(node, {"x", "y", "yaw", "yaw_deg"});
   if (node.has("x")) map.mount_x = node.at("x").number();
   if (node.has("y")) map.mount_y = node.at("y").number();
   if (node.has("yaw") && node.has("yaw_deg")) node.fail("yaw and yaw_deg", "one of them");
@@ -148,7 +149,7 @@ void read_mount(const JsonNode& node, LogMap& map) {
 }
 
 void read_drives(const JsonNode& node, LogMap& map) {
-  allow_keys(node, {"split", "standstill_s", "names", "marks"});
+  csv_import::allow_only(node, {"split", "standstill_s", "names", "marks"});
   if (node.has("split")) {
     const std::string split = node.at("split").text();
     if (split != "none" && split != "standstill" && split != "marks")
@@ -162,7 +163,7 @@ void read_drives(const JsonNode& node, LogMap& map) {
     node.fail(node.has("marks") ? "marks" : "no marks", "\"split\": \"marks\" together with \"marks\"");
   if (!node.has("marks")) return;
   for (const JsonNode& mark : node.at("marks").elements()) {
-    allow_keys(mark, {"from_s", "to_s", "name"});
+    csv_import::allow_only(mark, {"from_s", "to_s", "name"});
     map.marks.push_back({mark.at("from_s").number(), mark.at("to_s").number(), mark.text_or_empty("name")});
     if (!(map.marks.back().from_s < map.marks.back().to_s))
       mark.fail("from_s at or after to_s", "from before to");
@@ -170,23 +171,11 @@ void read_drives(const JsonNode& node, LogMap& map) {
 }
 
 void read_limits(const JsonNode& node, LogMap& map) {
-  allow_keys(node, {"max_gap_s", "max_wheel_gap_s", "min_drive_s"});
+  csv_import::allow_only(node, {"max_gap_s", "max_wheel_gap_s", "min_drive_s"});
   if (node.has("max_gap_s")) map.reference_gap_s = positive(node.at("max_gap_s"), 1e6);
   map.wheel_gap_s = node.has("max_wheel_gap_s") ? positive(node.at("max_wheel_gap_s"), 1e6)
                                                 : std::max(map.wheel_gap_s, map.reference_gap_s / 2);
   if (node.has("min_drive_s")) map.shortest_drive_s = positive(node.at("min_drive_s"), 1e6);
-}
-
-void check_schema(const JsonNode& root) {
-  const JsonNode schema = root.at("schema");
-  if (schema.text() != csv_import::kMapSchema)
-    schema.fail('"' + shown(schema.text()) + '"', fmt::format("\"{}\"", csv_import::kMapSchema));
-  const JsonNode version = root.at("schema_version");
-  if (version.integer() != csv_import::kMapSchemaVersion)
-    version.fail(fmt::format("version {}", version.integer()),
-                 fmt::format("{}", csv_import::kMapSchemaVersion));
-  allow_keys(root, {"schema", "schema_version", "name", "description", "source", "licence", "robot",
-                    "sources", "signals", "poses", "mount", "drives", "limits"});
 }
 
 // What needs to know where the robot was in between.
@@ -210,7 +199,8 @@ const MappedSource& source_of(const LogMap& map, const std::string& name) {
 
 LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses) {
   const JsonNode root = JsonNode::parse(text, file);
-  check_schema(root);
+  csv_import::check_map_schema(root, {"schema", "schema_version", "name", "description", "source", "licence",
+                                      "robot", "sources", "signals", "poses", "mount", "drives", "limits"});
   LogMap map;
   map.file = file;
   map.name = root.at("name").text();
@@ -228,11 +218,6 @@ LogMap parse_log_map(std::string_view text, const std::string& file, const std::
   if (root.has("mount")) read_mount(root.at("mount"), map);
   if (root.has("drives")) read_drives(root.at("drives"), map);
   return map;
-}
-
-bool is_log_map(std::string_view text, const std::string& file) {
-  const JsonNode root = JsonNode::parse(text, file);
-  return root.is_object() && (root.has("sources") || !root.has("time"));
 }
 
 }  // namespace odobench::log_import

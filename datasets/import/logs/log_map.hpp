@@ -76,7 +76,4 @@ const MappedSource& source_of(const LogMap& map, const std::string& name);
 // `poses` goes before that one.
 LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses = {});
 
-// Whether the JSON is such a map; else it is one of datasets/import/csv, whose columns stand in one table.
-bool is_log_map(std::string_view text, const std::string& file);
-
 }  // namespace odobench::log_import

@@ -16,13 +16,6 @@ namespace odobench::log_import {
 using csv_import::NeededSignal;
 using Kind = SignalFormat::Kind;
 
-void allow_keys(const JsonNode& node, const std::vector<std::string>& known) {
-  for (const std::string& key : node.keys())
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      node.fail(fmt::format("unknown key \"{}\"{}", shown(key), did_you_mean(key, known)),
-                fmt::format("{}", fmt::join(known, ", ")));
-}
-
 MappedField read_field(const JsonNode& node, const std::string& target, const LogMap& map) {
   std::vector<std::string> names;
   for (const MappedSource& source : map.sources) names.push_back(source.name);
@@ -67,7 +60,7 @@ MappedField read_other(const JsonNode& node, const std::string& target, const Lo
                                                   {"camera.x", "mm", 1e-3},
                                                   {"camera.y", "m", 1},
                                                   {"camera.y", "mm", 1e-3}}};
-  allow_keys(node, {"source", "field", "quaternion", "unit", "sign", "offset", "optional"});
+  csv_import::allow_only(node, {"source", "field", "quaternion", "unit", "sign", "offset", "optional"});
   MappedField field = read_field(node, target, map);
   std::vector<std::string> known;
   for (const Unit& unit : units) {
@@ -115,8 +108,8 @@ const NeededSignal& SignalReader::needed(const std::string& key) const {
 
 MappedSignal SignalReader::read(const std::string& key, const NeededSignal& needed) const {
   const JsonNode node = node_.at(key);
-  allow_keys(node, {"source", "field", "kind", "unit", "per_turn", "gear", "bits", "wrap", "sign", "offset",
-                    "radius", "optional"});
+  csv_import::allow_only(node, {"source", "field", "kind", "unit", "per_turn", "gear", "bits", "wrap", "sign",
+                                "offset", "radius", "optional"});
   MappedSignal signal;
   signal.at = read_field(node, needed.name, map_);
   signal.at.scale = 1;  // the sign stands in the format

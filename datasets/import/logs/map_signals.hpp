@@ -11,9 +11,6 @@
 
 namespace odobench::log_import {
 
-// JsonNode::allow_only() with the nearest key.
-void allow_keys(const JsonNode& node, const std::vector<std::string>& known);
-
 // Source, field or quaternion, sign and offset of a value; the source may be left out where there is one.
 MappedField read_field(const JsonNode& node, const std::string& target, const LogMap& map);
 // "gyro.z" (rad/s, deg/s), "accel.x" (m/s^2, g), "camera.x" (m, ...), "camera.heading" (rad, deg).
