@@ -45,8 +45,11 @@ struct Verb {
 };
 
 // In the order of the help. Without a verb the first one is meant.
-constexpr std::array<Verb, 19> kVerbs{{
+constexpr std::array<Verb, 22> kVerbs{{
     {"run", "run solvers on a problem and compare them (the default verb)", add_run},
+    {"campaign", "run a matrix of solvers, problems and repetitions into a store; goes on after an end",
+     add_campaign},
+    {"store", "what is in a store of a campaign; SQL, export and import", add_store},
     {"calibrate", "from logs of any format to parameters, in one go", add_calibrate},
     {"filter", "the relative-entropy filter over a recorded run", add_filter},
     {"windows", "solve windows of the relative-entropy filter and compare the methods", add_windows},
@@ -54,6 +57,7 @@ constexpr std::array<Verb, 19> kVerbs{{
     {"demo", "make the demo data set", add_demo},
     {"inspect", "what is implausible about the recordings of a set, and a mended set", add_inspect},
     {"evaluate", "cost and error tables of given parameters", add_evaluate},
+    {"models", "compare models of a robot by recordings that they were not fitted to", add_models},
     {"list", "solvers with their options, problems, data sets, scenarios", add_list},
     {"report", "stored runs as tables, as one HTML page, or as figures; nothing is solved again", add_report},
     {"export", "trajectories of a run directory for other programs", add_export},

@@ -7,6 +7,7 @@
 #   rooms      no circle of headers or rooms, no arrow upward; docs/figures/rooms.svg is that of the sources (scripts/rooms_figure.py;
 #              skipped, and said so, without python3)
 #   headers    begin with `#pragma once` (after comments)
+#   types      no two types of one name in one namespace
 #   flags      no -march=native, no -ffast-math or its parts: results must not depend on the machine that built them
 #   length     no source file above 450 lines
 #   comments   at most 110 columns
@@ -45,30 +46,37 @@ datasets/native               datasets datasets/robots
 datasets/robots
 datasets/import               datasets datasets/csv
 datasets/import/csv           datasets datasets/csv datasets/native datasets/robots
-datasets/import/logs          datasets datasets/csv datasets/import/csv datasets/logs datasets/native datasets/robots
+datasets/import/logs          datasets datasets/csv datasets/entropy datasets/import/csv datasets/logs datasets/native datasets/robots
 datasets/import/optiodom      datasets datasets/csv datasets/robots
 reports/records
 reports/statistics            reports/records
+reports/statistics/optimisers  reports/records reports/statistics
 reports/render
 reports/regression            reports/records reports/statistics reports/render
 reports/figures               reports/render
 reports/kinds                 reports/records reports/statistics reports/render reports/figures
+reports/kinds/optimisers      reports/records reports/statistics reports/statistics/optimisers reports/render reports/figures reports/kinds
+reports/kinds/calibration     reports/records reports/statistics reports/render reports/figures reports/kinds reports/kinds/optimisers reports/kinds/trust
 reports/kinds/fusion          reports/records reports/statistics reports/render reports/figures reports/kinds reports/kinds/calibration
 reports/kinds/kinds.cpp       reports/
 reports/page                  reports/
 problems
-problems/calibration          problems problems/calibration/kernel problems/robots datasets datasets/robots
+problems/calibration          problems problems/calibration/kernel problems/calibration/losses problems/calibration/models problems/robots datasets datasets/robots
+problems/calibration/losses
+problems/calibration/models   problems problems/calibration/kernel problems/robots datasets datasets/robots
 problems/calibration/kernel   problems
 problems/calibration/classical  problems problems/calibration problems/robots datasets datasets/robots
 problems/classic              problems
 problems/entropy              problems datasets/entropy/entropy_window.hpp
-problems/kalman               problems
-problems/fusion               problems problems/kalman problems/calibration problems/robots datasets
+problems/kalman               problems problems/entropy datasets/entropy/entropy_window.hpp
+problems/fusion               problems problems/kalman problems/calibration problems/robots problems/trust datasets
 problems/information          problems problems/calibration problems/robots datasets
 problems/inspection           problems problems/robots problems/calibration datasets datasets/robots
+problems/trust                problems problems/calibration problems/calibration/losses problems/information problems/robots datasets datasets/robots
 problems/robots               datasets datasets/robots problems/matrices.hpp
 problems/simulation           datasets/ problems/robots
 problems/simulation/motors    problems/simulation
+problems/suites               problems problems/classic problems/calibration problems/robots problems/simulation datasets datasets/robots
 solvers                       solvers/box solvers/certificate problems/problem.hpp problems/instruction_set.hpp
 solvers/box                   problems/problem.hpp
 solvers/certificate           solvers/box solvers/solver.hpp problems/problem.hpp problems/instruction_set.hpp
@@ -81,11 +89,14 @@ bench/console                 solvers/run.hpp reports/render bench/studies/watch
 bench/catalogue               datasets/ problems/ solvers/
 bench/studies                 datasets/ problems/ solvers/ reports/ bench/catalogue
 bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
+bench/studies/campaign        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
-bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting
+bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting bench/studies/trust
 bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/simulation      datasets/ problems/ reports/ bench/catalogue bench/studies
+bench/studies/trust           datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
 bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench                         datasets/ problems/ solvers/ reports/ bench/
 tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/
@@ -134,6 +145,18 @@ check_headers() {
     [[ $(sed -n -e '/^[[:space:]]*$/d' -e '/^[[:space:]]*\/\//d' -e p -e q "$header") == '#pragma once' ]] ||
       echo "$header:1: no #pragma once before the first declaration"
   done
+}
+
+# Two types of one name in one namespace are one to the linker, whichever it meets first: a crash far away from both.
+check_types() {
+  awk '
+    FNR == 1 { space = "" }
+    /^namespace [a-z_:0-9]+ \{/ { space = $2 }
+    /^(struct|class|enum class) [A-Za-z0-9_]+( final)?( : .*)? \{/ {
+      name = space "::" ($1 == "enum" ? $3 : $2)
+      if (name in places && places[name] != FILENAME) printf "%s:%d: %s is defined in %s, too\n", FILENAME, FNR, name, places[name]
+      places[name] = FILENAME
+    }' $(printf '%s\n' "${sources[@]}" | grep '\.hpp$' | grep -v '^tests/')
 }
 
 check_flags() {
@@ -202,6 +225,7 @@ else
   echo "check: rooms skipped: python3 is not installed"
 fi
 report headers "$(check_headers)"
+report types "$(check_types)"
 report flags "$(check_flags)"
 report length "$(check_length)"
 report comments "$(check_comments)"

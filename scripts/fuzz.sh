@@ -52,8 +52,11 @@ for format in "$@"; do
   kept=()
   [[ -d $root/tests/fuzz/corpus/$format ]] && kept=("$root/tests/fuzz/corpus/$format")
   log=$build/findings/$format.log
-  # In a folder of its own, since a configuration may name any file.
-  if (cd "$scratch" && export ODOBENCH_FUZZ=$format TIMEFORMAT='processor time: %U s' &&
+  # In a folder of its own, since a configuration may name any file. Reports of the sanitizers go to files beside the log: while the
+  # program runs inside the target, its standard error is caught.
+  report=log_path=$build/findings/$format.report
+  if (cd "$scratch" && export ODOBENCH_FUZZ=$format TIMEFORMAT='processor time: %U s' \
+      ASAN_OPTIONS=$ASAN_OPTIONS:$report UBSAN_OPTIONS=print_stacktrace=1:$report &&
       time "$target" "$corpus" "${kept[@]}" -max_total_time="$seconds" -timeout=25 -rss_limit_mb=4096 \
         -artifact_prefix="$build/findings/$format-" -print_final_stats=1) >"$log" 2>&1; then
     printf '%-14s %9s executions in %s of processor time, nothing found\n' "$format" \

@@ -20,6 +20,7 @@ struct ProblemRequest {
   std::string data;   // path of a data set; "": the problem's own
   CalibrationChoice calibration;
   InstructionSet kernel = InstructionSet::Baseline;
+  int instance = 0;  // of those that have numbered ones; 0: the first
 };
 
 struct ProblemEntry {
@@ -30,8 +31,10 @@ struct ProblemEntry {
   std::function<LoadedProblem(const ProblemRequest&)> make;
 };
 
-// Of a problem without data. `make` gets the dimension, 0 for the usual one.
+// Of a problem without data. `make` gets the dimension, 0 for the usual one, or the whole request with
+// dimension and instance as they are in force.
 ProblemEntry problem_entry(ClassicEntry about, std::function<Problem(int dimension)> make);
+ProblemEntry instance_entry(ClassicEntry about, std::function<Problem(const ProblemRequest&)> make);
 
 class Catalogue {
  public:
@@ -52,7 +55,8 @@ class Catalogue {
   const std::vector<ProblemEntry>& problems() const;
   const std::vector<ImporterEntry>& importers() const { return importers_; }
 
-  // Throw std::invalid_argument on an unknown name, with the nearest one.
+  // Throw std::invalid_argument on an unknown name, with the nearest one. A problem's name may choose:
+  // "bbob:f1[n=5,instance=3]" is bbob:f1 whose `make` has them in force whatever it is asked.
   const SolverEntry& solver(const std::string& name) const { return solvers_.find(name); }
   const ProblemEntry& problem(const std::string& name) const;
   const ImporterEntry& importer(const std::string& name) const;
@@ -63,6 +67,7 @@ class Catalogue {
     std::vector<std::function<std::vector<ProblemEntry>()>> later;
     std::vector<ProblemEntry> entries;
     std::map<std::string, std::size_t> places;
+    std::map<std::string, ProblemEntry> chosen;  // by name with options, made when it is first asked for
     void add(ProblemEntry entry);
   };
   Problems& complete() const;  // nothing is left for later
@@ -76,9 +81,10 @@ class Catalogue {
 // What comes with the program.
 void add_known(Catalogue& catalogue);
 
-// The values of --problem as names: comma lists of names and shell patterns ("nist:*", "mgh:*[!0]"), each
-// name once. A pattern leaves out problems that do not take `dimension` (0: the usual one), with a line in
-// `notes`. Throws std::invalid_argument on an empty item, an unknown name or a pattern that meets nothing.
+// The values of --problem as names: comma lists of names and shell patterns ("nist:*", "mgh:*[!0]",
+// "bbob:*[n=5,instance=1..5]", problem_names.hpp), each name once. A pattern leaves out problems that do
+// not take `dimension` (0: the usual one), with a line in `notes`. Throws std::invalid_argument on an
+// empty item, an unknown name or a pattern that meets nothing.
 std::vector<std::string> resolve_problems(const Catalogue& catalogue, const std::vector<std::string>& lists,
                                           int dimension, std::vector<std::string>& notes);
 

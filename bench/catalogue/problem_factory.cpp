@@ -11,6 +11,7 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "bench/catalogue/locations.hpp"
+#include "bench/catalogue/loss_choice.hpp"
 #include "datasets/native/columns.hpp"
 #include "datasets/native/robot_json.hpp"
 
@@ -67,16 +68,31 @@ void remark_on_mean(const Robot& robot, std::vector<std::string>& remarks) {
 }
 
 // "[segments,arc]": what a problem's name has to say, so that J of different kinds never meet in a table.
-std::string variant_of(const CalibrationProblem& problem, const Robot& robot) {
-  if (problem.structured()) return "";
+std::string variant_of(const CalibrationProblem& problem, const Robot& robot,
+                       const std::vector<SetAside>& without) {
+  constexpr std::size_t kNamed = 3;
+  std::string names, left;
+  for (const SetAside& one : without) names += (names.empty() ? "" : "+") + one.recording.id;
+  if (without.size() > kNamed)
+    left = fmt::format("[without:{}_recordings:{}]", without.size(), sha256(names).substr(0, 8));
+  else if (!without.empty())
+    left = "[without:" + names + "]";
+  if (problem.structured() && !problem.options().loss.robust()) return left;
   std::string text = problem.options().text();
-  if (robot.table.rule == TwistRule::LeastSquares && robot.kinematics == "4wis4wid")
+  const TwistRule rule = problem.options().model.twist.value_or(robot.table.rule);
+  if (!problem.options().model.twist && rule == TwistRule::LeastSquares && robot.kinematics == "4wis4wid")
     text += ", least_squares";
   std::erase(text, ' ');
-  return "[" + text + "]";
+  return "[" + text + "]" + left;
 }
 
 }  // namespace
+
+CalibrationChoice screened() {
+  CalibrationChoice choice;
+  choice.screen = kUsualScreen;
+  return choice;
+}
 
 CalibrationOptions calibration_options(const Robot& robot, const CalibrationChoice& choice) {
   CalibrationOptions options;
@@ -86,29 +102,62 @@ CalibrationOptions calibration_options(const Robot& robot, const CalibrationChoi
   options.heading_weight = choice.heading_weight;
   options.distance = choice.distance;
   options.mount = choice.mount;
+  options.piece_seconds = choice.piece_seconds;
+  options.piece_metres = choice.piece_metres;
+  options.model = model_terms(choice.model.value_or(robot.model));
+  options.mount = options.mount || options.model.mount;
   options.from_origin = robot.kinematics == "4wis4wid";
   return options;
 }
 
+std::vector<Recording> LoadedProblem::all_recordings() const {
+  if (!calibration) return {};
+  std::vector<Recording> all = calibration->recordings();
+  for (const SetAside& one : set_aside)  // their places ascend
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(one.place), one.recording);
+  return all;
+}
+
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
                                const CalibrationChoice& choice) {
+  require_consistent(choice);
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
   Dataset dataset = load_dataset(path);
   require_range(path.string(), dataset.recordings, fits_schema_1(dataset.robot) ? 1 : 2);
   if (choice.twist) dataset.robot.table.rule = *choice.twist;
   std::vector<std::string> remarks;
-  std::shared_ptr<const CalibrationProblem> model;
+  std::shared_ptr<const CalibrationProblem> model, aside;
+  LeftOut out;
+  LossStart start;
+  if (choice.model) model_terms(*choice.model);  // what is wrong with the option is no fault of the set
   try {
     if (dataset.robot.table.rule == TwistRule::Mean) remark_on_mean(dataset.robot, remarks);
-    model = std::make_shared<const CalibrationProblem>(dataset.robot, std::move(dataset.recordings),
-                                                       calibration_options(dataset.robot, choice), kernel);
+    CalibrationOptions options = calibration_options(dataset.robot, choice);
+    out = leave_out(dataset.robot, dataset.recordings, options, choice);
+    std::vector<Recording> without;
+    for (const SetAside& one : out.recordings) without.push_back(one.recording);
+    if (!without.empty())
+      aside = std::make_shared<const CalibrationProblem>(dataset.robot, std::move(without), options, kernel);
+    start = fit_loss(dataset.robot, dataset.recordings, options, choice, kernel);
+    model = std::make_shared<const CalibrationProblem>(dataset.robot, std::move(dataset.recordings), options,
+                                                       kernel);
+    if (model->residual_count() == 0)
+      throw std::invalid_argument("every recording ends before a piece of --piece does");
   } catch (const std::invalid_argument& error) {  // what is wrong with the set is no usage error
     throw DataError(fmt::format("{}: {}", path.string(), error.what()));
   }
   dataset.recordings.clear();
-  const std::string variant = variant_of(*model, dataset.robot);
-  return {Problem(model),       model,   std::move(dataset), path.string(),
-          sha256_of_file(path), variant, std::move(remarks)};
+  const std::string variant = variant_of(*model, dataset.robot, out.recordings);
+  auto apart = std::make_shared<const RecordingsApart>(dataset.robot, model);
+  LoadedProblem loaded{Problem(model),       model,   std::move(dataset), path.string(),
+                       sha256_of_file(path), variant, std::move(remarks)};
+  loaded.apart = std::move(apart);
+  loaded.set_aside = std::move(out.recordings);
+  loaded.left_out = std::move(out.said);
+  loaded.aside = std::move(aside);
+  loaded.start_name = std::move(start.name);
+  loaded.start = std::move(start.z);
+  return loaded;
 }
 
 void require_4wis4wid(const LoadedProblem& loaded, const char* what) {

@@ -7,8 +7,17 @@
 #include "datasets/dataset.hpp"
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/problem.hpp"
+#include "problems/trust/recordings_apart.hpp"
+#include "problems/trust/sibling_screening.hpp"
 
 namespace odobench {
+
+// A recording that differs from its siblings and takes no part in J.
+struct SetAside {
+  Recording recording;
+  std::size_t place = 0;  // among the recordings of the set
+  double z = 0;           // of problems/trust/sibling_screening.hpp
+};
 
 struct LoadedProblem {
   Problem problem;
@@ -19,9 +28,19 @@ struct LoadedProblem {
   std::string variant;  // "[n=12]" when a classic problem has another dimension than its usual one,
                         // "[segments,arc]" where a calibration is not as in the thesis
   std::vector<std::string> remarks = {};  // what whoever calibrates this robot should know, a sentence each
+  // What was left out, and a sentence for each; the recordings as a problem of their own, null without any.
+  std::vector<SetAside> set_aside = {};
+  std::vector<std::string> left_out = {};
+  std::shared_ptr<const CalibrationProblem> aside = nullptr;
+  // Where runs begin that are not told otherwise, with its name; empty: at the problem's own start.
+  std::string start_name = {};
+  Vector start = {};
+  std::shared_ptr<const RecordingsApart> apart = {};  // of a calibration: its recordings one by one
 
   // In records, and what seeds are derived from: problems of different dimensions are different problems.
   std::string name() const { return problem.name() + variant; }
+  // All recordings of the set in their order, copied where some were left out.
+  std::vector<Recording> all_recordings() const;
   std::string dataset_name() const { return dataset ? dataset->name : std::string(); }
 };
 
@@ -36,7 +55,17 @@ struct CalibrationChoice {
   double position_weight = 1, heading_weight = 1;
   double distance = 0.5;  // between sample rows, m
   bool mount = false;
+  double piece_seconds = 0, piece_metres = 0;  // of sample rows; 0: `distance`
+  bool estimate_weights = false;               // from the errors of the data, instead of the two above
+  Loss loss;                                   // without scales
+  std::vector<double> loss_scale;              // m, rad, or one of a loss per recording; none: estimated
+  // Recordings whose z is above it are left out; 0: nobody looks.
+  double screen = 0;
+  std::optional<std::vector<std::string>> model;  // none: as the set has it
 };
+
+// As it is without options, with screening.
+CalibrationChoice screened();
 
 // The options of a calibration of this robot: its rule, its start, what the choice says.
 CalibrationOptions calibration_options(const Robot& robot, const CalibrationChoice& choice = {});

@@ -60,6 +60,10 @@ void ProgressLine::draw(bool now) {
 
 std::string ProgressLine::line(std::size_t width) const {
   std::string text = fmt::format("[{}/{}] {:.1f} s", done_, cells_, last_);
+  constexpr double worth_an_estimate_s = 5;
+  if (done_ > 0 && done_ < cells_ && last_ > worth_an_estimate_s)
+    text += fmt::format(", about {:.0f} s left",
+                        last_ / static_cast<double>(done_) * static_cast<double>(cells_ - done_));
   for (const auto& [cell, progress] : running_) {
     std::string part = "  " + label_(cell);
     if (std::isfinite(progress.best_cost))

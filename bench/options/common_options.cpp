@@ -27,7 +27,37 @@ void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std:
       [&kernel](const std::string& text) { kernel = instruction_set("--kernel", text); });
 }
 
-void add_calibration(CLI::App& app, CalibrationChoice& choice) {
+namespace {
+
+void add_loss(CLI::App& app, CalibrationChoice& choice) {
+  add_value(app, "--loss", "NAME[=TUNING][:recording]",
+            "what large errors count for: squared, huber, cauchy or tukey, of every sample or of every "
+            "recording [squared]",
+            [&choice](const std::string& text) { choice.loss = parse_loss(text); });
+  add_value(
+      app, "--loss-scale", "P,H|S",
+      "of a loss per sample in m and rad, of one per recording one number [estimated from the errors of "
+      "the least-squares solution]",
+      [&choice](const std::string& text) {
+        choice.loss_scale.clear();
+        for (const std::string& item : comma_items(text))
+          choice.loss_scale.push_back(finite_number("--loss-scale", item, true));
+      });
+}
+
+}  // namespace
+
+void add_screen(CLI::App& app, double& screen) {
+  add_value(app, "--screen", "off|Z",
+            fmt::format("leave out recordings that differ from their repetitions by more than Z times the "
+                        "usual [{:g}]",
+                        kUsualScreen),
+            [&screen](const std::string& text) {
+              screen = text == "off" ? 0 : finite_number("--screen", text, true);
+            });
+}
+
+void add_cost(CLI::App& app, CalibrationChoice& choice) {
   add_value(
       app, "--cost", "NAME",
       "what is compared with the reference: every_sample, final_pose, segments or optiodom [every_sample]",
@@ -37,21 +67,54 @@ void add_calibration(CLI::App& app, CalibrationChoice& choice) {
             [&choice](const std::string& text) { choice.rule = robots::integration_rule(text); });
   add_value(app, "--twist", "RULE", "of steered wheels: least_squares or mean [as the set has it]",
             [&choice](const std::string& text) { choice.twist = twist_rule(text); });
-  add_value(app, "--weights", "P,H", "of squared position (m) and heading (rad) errors [1,1]",
+  add_value(app, "--weights", "P,H|auto",
+            "of squared position (m) and heading (rad) errors; auto: from the errors of the data [1,1]",
             [&choice](const std::string& text) {
+              choice.estimate_weights = text == "auto";
+              if (choice.estimate_weights) return;
               const std::size_t comma = text.find(',');
               if (comma == std::string::npos)
-                throw std::invalid_argument(
-                    fmt::format("--weights={}: expected two numbers above 0, position,heading", text));
+                throw std::invalid_argument(fmt::format(
+                    "--weights={}: expected two numbers above 0, position,heading, or auto", text));
               choice.position_weight = finite_number("--weights", text.substr(0, comma), true);
               choice.heading_weight = finite_number("--weights", text.substr(comma + 1), true);
             });
   add_value(
       app, "--distance", "M", "between the sample rows of segments and optiodom, in m [0.5]",
       [&choice](const std::string& text) { choice.distance = finite_number("--distance", text, true); });
+  add_value(app, "--piece", "Ts|Dm",
+            "sample rows of segments and optiodom by time or along the reference instead, e.g. 5s, 0.5m",
+            [&choice](const std::string& text) {
+              const char unit = text.empty() ? ' ' : text.back();
+              if (unit != 's' && unit != 'm')
+                throw std::invalid_argument(
+                    fmt::format("--piece={}: expected seconds or metres, as in 5s or 0.5m", shown(text)));
+              const double size = finite_number("--piece", text.substr(0, text.size() - 1), true);
+              choice.piece_seconds = unit == 's' ? size : 0;
+              choice.piece_metres = unit == 'm' ? size : 0;
+            });
+  add_loss(app, choice);
+}
+
+void add_calibration(CLI::App& app, CalibrationChoice& choice) {
+  add_cost(app, choice);
   app.add_flag(
       "--mount", choice.mount,
       "the tracked frame's place and yaw on the robot are unknowns, too; judge them on other drives");
+  add_model(app, choice);
+}
+
+void add_model(CLI::App& app, CalibrationChoice& choice) {
+  add_value(app, "--model", "NAME,...",
+            "nuisance parameters and richer models, docs/models.md: contact_offset, contact_offsets, "
+            "steering_zeros, lever_arm, heading_offset, time_offset[=S][:speeds], start_pose, anchor, "
+            "least_squares, ...; 'none' for those of the set [as the set has it]",
+            [&choice](const std::string& text) {
+              if (!choice.model) choice.model.emplace();
+              if (text == "none") return;
+              for (const std::string& name : comma_items(text)) choice.model->push_back(name);
+              model_terms(*choice.model);
+            });
 }
 
 void add_classical(CLI::App& app, ClassicalChoice& choice) {
@@ -115,6 +178,11 @@ void add_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
 
 void add_threads(CLI::App& app, int& threads) {
   add_count(app, "--threads", threads, 1, 1024, "threads; results do not depend on them [one per core]");
+}
+
+void add_wait(CLI::App& app, int& seconds) {
+  add_count(app, "--wait", seconds, 0, 1'000'000,
+            "seconds to wait for another process that writes to the store [0]");
 }
 
 void add_run_folder(CLI::App& app, std::string& out, bool& overwrite) {

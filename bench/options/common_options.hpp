@@ -24,8 +24,15 @@ inline constexpr const char* kNamedOnly = "no result of this verb depends on it"
 
 // --kernel. `remark`: what the verb's results have to do with it.
 void add_kernel(CLI::App& app, std::optional<InstructionSet>& kernel, const std::string& remark);
-// --cost, --integration, --twist, --weights, --distance, --mount of a calibration.
+// --cost, --integration, --twist, --weights, --distance, --piece, --loss, --loss-scale: J of the parameters
+// that the set has.
+void add_cost(CLI::App& app, CalibrationChoice& choice);
+// Those and --mount, --model of a calibration.
 void add_calibration(CLI::App& app, CalibrationChoice& choice);
+// --model alone.
+void add_model(CLI::App& app, CalibrationChoice& choice);
+// --screen of verbs that compare recordings with their siblings.
+void add_screen(CLI::App& app, double& screen);
 // --classical, --side.
 void add_classical(CLI::App& app, ClassicalChoice& choice);
 // --max-evals, --time-limit, --target.
@@ -42,6 +49,8 @@ void add_count(CLI::App& app, const std::string& name, int& value, int lowest, i
                const std::string& help);
 void add_seed(CLI::App& app, std::uint64_t& seed, const std::string& help);
 void add_threads(CLI::App& app, int& threads);
+// --wait of verbs that write to a store.
+void add_wait(CLI::App& app, int& seconds);
 // --out and --overwrite of verbs that write each run as it ends.
 void add_run_folder(CLI::App& app, std::string& out, bool& overwrite);
 // --seed and --threads of simulated drives.

@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kFilterExamples = R"(Examples:
   bench filter --data=run.csv --out=filtered.csv
   bench filter --data=run.csv --truth=truth.csv --solver=exact --gap
+  bench filter --data=drive.mcap --map=map.json --out=filtered.csv
   bench filter --data=thesis.csv --as-published --out=thesis_po.csv
   bench filter --data=other.csv --columns=time=t,enc1=w1,enc2=w2,enc3=w3,enc4=w4,yaw_rad=heading
 Columns: time_s, enc1_m..enc4_m, ax_m_s2, ay_m_s2, one of yaw_step_deg, yaw_step_rad, yaw_rate_deg_s,
@@ -80,9 +81,13 @@ void add_meanings(CLI::App& app, EntropyOptions& o) {
 
 void add_filter_options(CLI::App& app, FilterOptions& options) {
   EntropyOptions& o = options.study;
-  app.add_option("--data", o.data, "measurements, a row per step; '-' is standard input")
+  app.add_option("--data", o.data,
+                 "measurements, a row per step; '-' is standard input. With --map logs of any format")
       ->required()
-      ->type_name("RUN.CSV");
+      ->type_name("RUN.CSV|LOG,...");
+  app.add_option("--map", o.map,
+                 "of logs: robot, wheels, gyro.z, accel.x and accel.y, as for bench import (docs/logs.md)")
+      ->type_name("MAP.JSON");
   app.add_option(
          "--solver", o.solver,
          "coordinate, exact, relaxed, zero (no increments), or any solver with its options [coordinate]")
@@ -98,6 +103,13 @@ void add_filter_options(CLI::App& app, FilterOptions& options) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   app.add_flag("--gap", o.gap, "measure how far H is from the best and from the relaxation");
+  add_value(app, "--compare", "kalman",
+            "beside it a linear Kalman filter and smoother on the same rows; with --truth",
+            [&o](const std::string& text) {
+              if (text != "kalman")
+                throw std::invalid_argument(fmt::format("--compare={}: expected kalman", text));
+              o.compare_kalman = true;
+            });
   app.add_option("--records", options.records, "folder for the run record (runs.jsonl) and tables.*")
       ->type_name("DIR");
   add_constants(app, o);

@@ -7,6 +7,7 @@
 #include "bench/catalogue/option_values.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
+#include "datasets/native/sensor_files.hpp"
 
 namespace odobench {
 
@@ -41,9 +42,12 @@ Table dataset_table(const Dataset& dataset) {
 }
 
 void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json,
-                    bool quiet) {
+                    bool quiet, const SetSensors& sensors) {
   InterruptGuard::remember();
   FileTransaction transaction(existing_files(overwrite));
+  std::vector<std::string> ids;
+  for (const Recording& r : dataset.recordings) ids.push_back(r.id);
+  const std::vector<std::string> remarks = add_sensor_files(sensors, ids, set, transaction);
   add_dataset(dataset, set, transaction, false, InterruptGuard::stop());
   const std::vector<std::filesystem::path> files = transaction.targets();
   transaction.commit();
@@ -51,6 +55,8 @@ void save_announced(const Dataset& dataset, const std::filesystem::path& set, bo
   for (const Recording& r : dataset.recordings) samples += r.size();
   if (!quiet)
     note(fmt::format("{}: {} recordings, {} samples", set.string(), dataset.recordings.size(), samples));
+  if (!quiet)
+    for (const std::string& remark : remarks) note(remark);
   if (json) print_tables({dataset_table(dataset), written_table(files)}, Format::Json);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/dataset.hpp"
+#include "datasets/sensor_rows.hpp"
 #include "reports/render/table.hpp"
 
 namespace odobench {
@@ -18,8 +19,8 @@ Table written_table(const std::vector<std::filesystem::path>& files);
 Table dataset_table(const Dataset& dataset);
 
 // Writes a data set and says so: a line on standard error (unless `quiet`), with `json` the table of files on
-// standard output.
+// standard output. `sensors` go to files beside it (datasets/native/sensor_files.hpp).
 void save_announced(const Dataset& dataset, const std::filesystem::path& set, bool overwrite, bool json,
-                    bool quiet = false);
+                    bool quiet = false, const SetSensors& sensors = {});
 
 }  // namespace odobench

@@ -33,6 +33,13 @@ void CellRecorder::finished(std::size_t cell, const Result& result, const std::s
   watcher_.finished(first_ + cell);
 }
 
+void CellRecorder::keep(std::size_t cell, RunRecord record) {
+  const std::lock_guard lock(mutex_);
+  records_[cell] = std::make_unique<RunRecord>(std::move(record));
+  ++finished_;
+  in_order_ = false;
+}
+
 void CellRecorder::move_to(std::vector<RunRecord>& list) {
   list.reserve(list.size() + finished_);
   for (std::unique_ptr<RunRecord>& record : records_) {

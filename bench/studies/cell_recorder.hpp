@@ -28,7 +28,9 @@ class CellRecorder final : public CellWatcher {
   // Throws what RunFolder::append() does.
   void finished(std::size_t cell, const Result& result, const std::string& time_utc) override;
 
-  // Of the cells that ran, in their order, moved behind `list`.
+  // The record of a cell that does not run, since an earlier call did; it is in the folder.
+  void keep(std::size_t cell, RunRecord record);
+  // Of the cells that ran or were kept, in their order, moved behind `list`.
   void move_to(std::vector<RunRecord>& list);
   // Whether the cells ended in their order, so that the file has the records as the memory has.
   bool in_order() const { return in_order_; }

@@ -10,6 +10,7 @@
 #include <exception>
 #include <iterator>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -20,24 +21,18 @@
 namespace odobench {
 namespace {
 
-// Hands out the cells in order and keeps the first exception.
+// Hands out the work in order and keeps the first exception.
 class Dispatcher {
  public:
-  Dispatcher(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
-             const Stop& stop, CellWatcher& watcher)
-      : problems_(problems),
-        cells_(cells),
-        budget_(budget),
-        threads_(threads),
-        asked_(stop),
-        watcher_(watcher) {}
+  Dispatcher(std::size_t count, const Stop& stop, const std::function<void(std::size_t)>& call)
+      : count_(count), asked_(stop), call_(call) {}
 
   void work() {
     while (!stop_.load() && !asked_.requested()) {
-      const std::size_t cell = next_.fetch_add(1);
-      if (cell >= cells_.size()) return;
+      const std::size_t next = next_.fetch_add(1);
+      if (next >= count_) return;
       try {
-        run(cell);
+        call_(next);
       } catch (...) {
         const std::lock_guard lock(mutex_);
         if (!error_) error_ = std::current_exception();
@@ -50,33 +45,9 @@ class Dispatcher {
   }
 
  private:
-  void run(std::size_t index) {
-    const RunCell cell = cells_[index];
-    watcher_.started(index);
-    SolveOptions options;
-    options.budget = budget_;
-    options.seed = cell.seed;
-    options.interrupt = asked_.flag();
-    options.threads = threads_;
-    options.polish = cell.polish;
-    options.solvers = &cells_.catalogue().solvers();
-    options.observer = [this, index](const Progress& progress) { watcher_.progressed(index, progress); };
-    const Problem own = problems_[cell.problem];  // a copy has evaluation counts of its own
-    const Vector start = cell.random_start        ? random_start(own, cell.start_seed)
-                         : cell.start.size() == 0 ? own.start()
-                                                  : cell.start;
-    const std::string begin = utc_now();
-    const Result result = solve(own, cell.solver, start, options);
-    if (result.termination == Termination::Interrupted && !result.usable()) return;  // as good as not begun
-    watcher_.finished(index, result, begin);
-  }
-
-  const std::vector<Problem>& problems_;
-  const CellList& cells_;
-  const Budget& budget_;
-  const int threads_;
+  const std::size_t count_;
   const Stop asked_;
-  CellWatcher& watcher_;
+  const std::function<void(std::size_t)>& call_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
@@ -152,9 +123,27 @@ RunCell CellList::operator[](std::size_t index) const {
   return cell;
 }
 
-void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
-               const Stop& stop, CellWatcher& watcher) {
-  Dispatcher dispatcher(problems, cells, budget, threads, stop, watcher);
+std::optional<Result> run_cell(Problem own, const RunCell& cell, const Budget& budget, int threads,
+                               const Stop& stop, const Catalogue& catalogue, Observer observer) {
+  SolveOptions options;
+  options.budget = budget;
+  options.seed = cell.seed;
+  options.interrupt = stop.flag();
+  options.threads = threads;
+  options.polish = cell.polish;
+  options.solvers = &catalogue.solvers();
+  options.observer = std::move(observer);
+  const Vector start = cell.random_start        ? random_start(own, cell.start_seed)
+                       : cell.start.size() == 0 ? own.start()
+                                                : cell.start;
+  Result result = solve(own, cell.solver, start, options);
+  if (result.termination == Termination::Interrupted && !result.usable()) return std::nullopt;
+  return result;
+}
+
+void run_side_by_side(std::size_t count, int threads, const Stop& stop,
+                      const std::function<void(std::size_t)>& work) {
+  Dispatcher dispatcher(count, stop, work);
   if (threads <= 1) {
     dispatcher.work();
   } else {
@@ -165,19 +154,41 @@ void run_cells(const std::vector<Problem>& problems, const CellList& cells, cons
     Meeting meeting;
     meeting.arrive();
     arena.execute([&] {
-      const auto work = [&] {
+      const auto one = [&] {
         meeting.arrive();
         dispatcher.work();
         meeting.arrive();
       };
       tbb::task_group workers;
-      for (int i = 1; i < threads; ++i) workers.run(work);
-      work();
+      for (int i = 1; i < threads; ++i) workers.run(one);
+      one();
       workers.wait();
     });
     meeting.arrive();
   }
   dispatcher.rethrow();
+}
+
+void run_cells(const std::vector<Problem>& problems, const CellList& cells,
+               const std::vector<std::size_t>& which, const Budget& budget, int threads, const Stop& stop,
+               CellWatcher& watcher) {
+  run_side_by_side(which.size(), threads, stop, [&](std::size_t i) {
+    const std::size_t index = which[i];
+    const RunCell cell = cells[index];
+    watcher.started(index);
+    const std::string begin = utc_now();
+    const std::optional<Result> result =
+        run_cell(problems[cell.problem], cell, budget, threads, stop, cells.catalogue(),
+                 [&watcher, index](const Progress& progress) { watcher.progressed(index, progress); });
+    if (result) watcher.finished(index, *result, begin);
+  });
+}
+
+void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
+               const Stop& stop, CellWatcher& watcher) {
+  std::vector<std::size_t> all(cells.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  run_cells(problems, cells, all, budget, threads, stop, watcher);
 }
 
 }  // namespace odobench

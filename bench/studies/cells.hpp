@@ -1,6 +1,8 @@
 // The cells of a comparison (solver x repetition), their seeds and starts, and running them side by side.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -85,10 +87,23 @@ class CellWatcher {
   virtual void finished(std::size_t cell, const Result& result, const std::string& time_utc) = 0;
 };
 
-// Runs the cells on `threads` threads, begun in their order; a population solver's batches use threads that
-// have no cell left. Results do not depend on `threads`. After `stop` no further cell begins, and one
-// that had not evaluated anything is not reported. After an
-// exception of the watcher (a record that cannot be written) no further cell begins; it is thrown from here.
+// Solves one cell; `own` is a copy for it alone. Nothing when it was stopped before anything was evaluated.
+std::optional<Result> run_cell(Problem own, const RunCell& cell, const Budget& budget, int threads,
+                               const Stop& stop, const Catalogue& catalogue, Observer observer);
+
+// work(0) ... work(count - 1), begun in this order, on `threads` threads; batches of a population solver in
+// them use threads that have no work left. After `stop` nothing further begins; after an exception neither,
+// and it is thrown from here.
+void run_side_by_side(std::size_t count, int threads, const Stop& stop,
+                      const std::function<void(std::size_t)>& work);
+
+// Runs the cells `which` by run_side_by_side(). Results do not depend on `threads`. A cell that had not
+// evaluated anything when the stop came is not reported. An exception of the watcher (a record that cannot be
+// written) ends it.
+void run_cells(const std::vector<Problem>& problems, const CellList& cells,
+               const std::vector<std::size_t>& which, const Budget& budget, int threads, const Stop& stop,
+               CellWatcher& watcher);
+// All of them.
 void run_cells(const std::vector<Problem>& problems, const CellList& cells, const Budget& budget, int threads,
                const Stop& stop, CellWatcher& watcher);
 

@@ -7,6 +7,7 @@
 
 #include "base/json_node.hpp"
 #include "base/sha256.hpp"
+#include "bench/studies/parameter_noise.hpp"
 #include "bench/studies/records.hpp"
 #include "reports/figures/vega.hpp"
 
@@ -17,9 +18,21 @@ namespace {
 constexpr std::size_t kIdDigits = 12;
 constexpr std::size_t kLongestName = 120;
 
-// The standard deviations of a record are of its free parameters and relative (record.hpp).
+void add_intervals(const RunRecord& record, std::vector<FoundParameter>& found) {
+  if (!record.trust) return;
+  for (FoundParameter& one : found)
+    for (const ParameterIntervalRecord& own : record.trust->parameters) {
+      if (own.name != one.parameter.name) continue;
+      one.decided_by = own.interval.reason;
+      if (!std::isfinite(own.interval.half_width)) continue;
+      one.half_width = own.interval.half_width;
+      one.df = own.interval.df;
+    }
+}
+
+// Those of a record are of its free parameters and relative (record.hpp).
 void add_deviations(const RunRecord& record, std::vector<FoundParameter>& found) {
-  const auto series = record.series.find("standard_deviations");
+  const auto series = record.series.find("sd_if_samples_were_independent");
   if (series == record.series.end()) return;
   std::vector<FoundParameter*> free;
   for (FoundParameter& one : found)
@@ -29,7 +42,7 @@ void add_deviations(const RunRecord& record, std::vector<FoundParameter>& found)
     const ParameterValue& p = free[i]->parameter;
     const double scale = p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
     const double deviation = series->second[i] * scale;
-    if (std::isfinite(deviation)) free[i]->deviation = deviation;
+    if (std::isfinite(deviation)) free[i]->sd_if_samples_were_independent = deviation;
   }
 }
 
@@ -84,6 +97,26 @@ void read_robot_of(const JsonNode& node, ParameterFile& file) {
     node.fail("none, or not as many as nominal ones", "the same wheels twice");
 }
 
+// Of earlier versions only what they called the standard deviation.
+void read_interval(const JsonNode& node, FoundParameter& found) {
+  for (const char* name : {"standard_deviation", "sd_if_samples_were_independent"})
+    if (const auto deviation = node.find(name))
+      found.sd_if_samples_were_independent = deviation->optional_number();
+  const auto interval = node.find("interval");
+  if (!interval || !interval->is_object()) return;
+  found.half_width = interval->at("half_width").optional_number();
+  found.df = interval->at("df").optional_number();
+  found.decided_by = interval->text_or_empty("decided_by");
+}
+
+nlohmann::ordered_json interval_json(const FoundParameter& found) {
+  using Json = nlohmann::ordered_json;
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  Json interval{{"half_width", number(found.half_width)}, {"df", number(found.df)}};
+  if (!found.decided_by.empty()) interval["decided_by"] = found.decided_by;
+  return interval;
+}
+
 std::vector<FoundParameter> read_found(const JsonNode& root) {
   std::vector<FoundParameter> found;
   const JsonNode values = root.at("values");
@@ -97,7 +130,7 @@ std::vector<FoundParameter> read_found(const JsonNode& root) {
     p.lower = node.at("lower").number();
     p.upper = node.at("upper").number();
     p.at_bound = node.text_or_empty("at_bound");
-    one.deviation = node.at("standard_deviation").optional_number();
+    read_interval(node, one);
     found.push_back(std::move(one));
   }
   if (found.size() != values.keys().size()) values.fail("another number of values", "one per parameter");
@@ -118,15 +151,18 @@ ParameterFile parameter_file(const LoadedProblem& loaded, const RunRecord& recor
   ParameterFile file;
   file.label = record.label;
   for (const ParameterValue& value : record.parameters) file.parameters.push_back({value, std::nullopt});
+  add_intervals(record, file.parameters);
   add_deviations(record, file.parameters);
   if (loaded.calibration && loaded.dataset) {
     const Robot& robot = loaded.dataset->robot;
     file.robot = robot.name;
     file.kinematics = robot.kinematics;
     file.ties = robot.ties;
-    file.wheels = wheels_with(robot.table, values_of(robot.table, record.parameters));
-    file.nominal_wheels = wheels_with(robot.table, values_of(robot.table, {}));
+    const WheelTable table = with_model(robot, loaded.calibration->options().model).table;
+    file.wheels = wheels_with(table, values_of(table, record.parameters));
+    file.nominal_wheels = wheels_with(table, values_of(table, {}));
   }
+  file.noise = noise_figures(record);
   file.run_id = sha256(to_json_line(record)).substr(0, kIdDigits);
   file.problem = record.problem;
   file.dataset = record.dataset;
@@ -142,15 +178,18 @@ std::string to_json_text(const ParameterFile& file) {
   Json root{{"schema", kParameterSchema}, {"schema_version", kParameterSchemaVersion}, {"name", file.label}};
   root["values"] = Json::object();
   root["parameters"] = Json::array();
-  for (const auto& [p, deviation] : file.parameters) {
+  for (const FoundParameter& found : file.parameters) {
+    const ParameterValue& p = found.parameter;
     root["values"][p.name] = p.value;
     root["parameters"].push_back({{"name", p.name},
                                   {"unit", p.unit},
                                   {"nominal", p.nominal},
                                   {"lower", p.lower},
                                   {"upper", p.upper},
-                                  {"standard_deviation", deviation ? Json(*deviation) : Json()},
+                                  {"interval", interval_json(found)},
                                   {"at_bound", p.at_bound}});
+    if (found.sd_if_samples_were_independent)
+      root["parameters"].back()["sd_if_samples_were_independent"] = *found.sd_if_samples_were_independent;
   }
   if (!file.kinematics.empty()) {
     Json ties = Json::object();
@@ -161,6 +200,7 @@ std::string to_json_text(const ParameterFile& file) {
                      {"wheels", wheels_json(file.wheels)},
                      {"nominal_wheels", wheels_json(file.nominal_wheels)}};
   }
+  if (file.noise) root["noise"] = noise_json(*file.noise);
   root["run"] = {{"id", file.run_id},        {"problem", file.problem},
                  {"dataset", file.dataset},  {"dataset_sha256", file.dataset_sha256},
                  {"solver", file.solver},    {"cost", file.cost ? Json(*file.cost) : Json()},
@@ -177,6 +217,7 @@ ParameterFile read_parameter_file(const fs::path& path) {
   file.label = root.at("name").text();
   file.parameters = read_found(root);
   if (const std::optional<JsonNode> robot = root.find("robot")) read_robot_of(*robot, file);
+  if (const std::optional<JsonNode> noise = root.find("noise")) file.noise = noise_from(*noise);
   const JsonNode run = root.at("run");
   file.run_id = run.at("id").text();
   file.problem = run.at("problem").text();

@@ -2,11 +2,15 @@
 //
 //   {"schema": "odobench-parameters", "schema_version": 1, "name": LABEL,
 //    "values": {NAME: value, ..},                        what --parameters=FILE reads
-//    "parameters": [{"name", "unit", "nominal", "lower", "upper", "standard_deviation", "at_bound"}, ..],
+//    "parameters": [{"name", "unit", "nominal", "lower", "upper", "interval", "at_bound"}, ..],
 //    "robot": {"name", "kinematics", "ties": {NAME: NAME}, "wheels": [..], "nominal_wheels": [..]},
+//    "noise": {..},                                      of the odometry (parameter_noise.hpp), or absent
 //    "run": {"id", "problem", "dataset", "dataset_sha256", "solver", "cost", "time_utc"}}
-// standard_deviation: in the parameter's unit, null where the record has none. wheels: the table of
-// datasets/robots/wheel.hpp at these values, each with its fields, "drive" (names of signals) and "steering".
+// interval: {"half_width", "df", "decided_by"}: of 95 %, in the parameter's unit; null with the reason in
+// words where there is none ("decided by the box: ..."). sd_if_samples_were_independent stands beside it
+// where the record has it; no interval is made of that. Files of earlier versions, which call it
+// standard_deviation, are read and have no intervals. wheels: the table of datasets/robots/wheel.hpp at these
+// values, each with its fields, "drive" (names of signals) and "steering".
 // id: the first 12 digits of the SHA-256 of the run's line in runs.jsonl. Problems that are no calibration
 // have no "robot".
 #pragma once
@@ -19,6 +23,7 @@
 
 #include "bench/catalogue/problem_factory.hpp"
 #include "datasets/robots/wheel.hpp"
+#include "reports/kinds/trust/noise_record.hpp"
 #include "reports/records/record.hpp"
 
 namespace odobench {
@@ -29,7 +34,10 @@ inline constexpr const char* kParameterFolder = "parameters";  // of a run direc
 
 struct FoundParameter {
   ParameterValue parameter;
-  std::optional<double> deviation;  // standard, in the parameter's unit
+  std::optional<double> half_width;  // of the 95 % interval, in the parameter's unit
+  std::optional<double> df = {};     // degrees of freedom of it
+  std::string decided_by = {};       // why there is none, in words
+  std::optional<double> sd_if_samples_were_independent = {};
 };
 
 struct ParameterFile {
@@ -38,6 +46,7 @@ struct ParameterFile {
   std::string robot, kinematics;  // "": no calibration
   std::vector<std::pair<std::string, std::string>> ties;
   std::vector<Wheel> wheels, nominal_wheels;
+  std::optional<NoiseFigures> noise;
   std::string run_id, problem, dataset, dataset_sha256, solver, time_utc;
   std::optional<double> cost;
 };

@@ -120,7 +120,12 @@ std::vector<ParameterSet> read_parameters(const ParameterNames& names, const std
     return {{source, values}};
   }
   for (const NamedParameters& set : names.known) {
-    if (set.name == source) return {{source, Eigen::Map<const Vector>(set.values.data(), count)}};
+    if (set.name == source) {  // of the robot alone: a mount, a lag, ... stay nominal
+      Vector values = read_parameters(names, "nominal", option).front().values;
+      for (std::size_t i = 0; i < std::min(set.values.size(), names.parameters.size()); ++i)
+        values[static_cast<Eigen::Index>(i)] = set.values[i];
+      return {{source, values}};
+    }
     known.push_back(set.name);
   }
   if (std::filesystem::exists(source)) return from_file(names, source);

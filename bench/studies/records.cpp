@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -12,11 +13,15 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/trust_figures.hpp"
 #include "problems/calibration/drive_errors.hpp"
 #include "problems/classic/classic_problems.hpp"
 #include "problems/information/identifiability.hpp"
+#include "problems/trust/weighted_down.hpp"
 #include "reports/kinds/calibration/drive_tables.hpp"
 #include "reports/kinds/calibration/fit_table.hpp"
+#include "reports/kinds/trust/loss_tables.hpp"
+#include "reports/records/record_store.hpp"
 
 namespace odobench {
 namespace {
@@ -78,10 +83,56 @@ void describe_tracks(const LoadedProblem& loaded, const std::vector<PoseTrack>& 
   describe_drives(loaded, tracks, record);
 }
 
+// The loss with its scales, and what it counts for less.
+void describe_loss(const LoadedProblem& loaded, const Vector& z, RunRecord& record) {
+  const Loss& loss = loaded.calibration->options().loss;
+  if (!loss.robust()) return;
+  if (loss.scope == LossScope::Recording) {
+    record.measures.put({"loss.recording_scale", loss.position_scale, ""});
+  } else {
+    record.measures.put({"loss.position_scale", loss.position_scale, "m"});
+    record.measures.put({"loss.heading_scale", loss.heading_scale, "rad"});
+  }
+  record.measures.put({"loss.tuning", loss.tuning, ""});
+  for (const char* series : kWeightedDownSeries) record.series[series];
+  for (const WeightedDown& one : weighted_down(loaded.dataset->robot, *loaded.calibration, z)) {
+    const auto sample = [](const std::optional<std::size_t>& k) {
+      return k ? static_cast<double>(*k) : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double values[] = {static_cast<double>(one.recording), one.ratio, one.weight, sample(one.first),
+                             sample(one.last)};
+    for (std::size_t k = 0; k < kWeightedDownSeries.size(); ++k)
+      record.series[kWeightedDownSeries[k]].push_back(values[k]);
+    if (one.outlier && !one.first)
+      record.notes.push_back(
+          fmt::format("{}: its errors are {:.3g} times those of the usual drive; the loss "
+                      "counts them for {:.2g} of their squares",
+                      record.errors[one.recording].recording, one.ratio, one.weight));
+  }
+}
+
+// Errors on the recordings that were left out.
+void describe_set_aside(const LoadedProblem& loaded, const Vector& z, RunRecord& record) {
+  if (!loaded.aside) return;
+  const std::vector<MaxErrors> errors = loaded.aside->max_errors(z);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const MaxErrors& e = errors[i];
+    const auto put = [&](const char* what, double value, const char* unit) {
+      record.measures.put({set_aside_measure(e.recording, what), value, unit, Better::None, e.recording});
+    };
+    put("z", loaded.set_aside[i].z, "");
+    put("x", e.x, "m");
+    put("y", e.y, "m");
+    put("heading", e.theta, "rad");
+  }
+}
+
 void describe_point(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
   record.parameters = parameter_values(loaded.problem.parameters(), x);
   if (!loaded.calibration) return;
   describe_tracks(loaded, tracks_of(*loaded.calibration, x), record);
+  describe_loss(loaded, x, record);
+  describe_set_aside(loaded, x, record);
 }
 
 std::map<std::string, double> budget_figures(const Budget& budget) {
@@ -146,14 +197,13 @@ RunRecord empty_record(const LoadedProblem& loaded, const RunContext& context, c
 
 }  // namespace
 
-RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
-                     const Budget& budget, const Result& result, const RunContext& context,
-                     const std::string& time_utc) {
+RunRecord planned_record(const LoadedProblem& loaded, const RunCell& cell, const OptionValues& options,
+                         std::uint64_t base_seed, const Budget& budget, const RunContext& context,
+                         const std::string& time_utc) {
   RunRecord record = empty_record(loaded, context, time_utc);
   record.label = cell.label();
-  record.kind = result.termination == Termination::NotApplicable ? "skipped" : "run";
   record.solver = cell.solver.name;
-  record.options = result.options;
+  record.options = options;
   record.polish = cell.polish.name.empty() ? "" : cell.polish.text();
   record.seed = cell.seed;
   record.base_seed = base_seed;
@@ -161,6 +211,14 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
   record.start = cell.random_start ? "random" : cell.start_name.empty() ? "nominal" : cell.start_name;
   record.random = cell.draws_random_numbers;
   record.budget = budget_figures(budget);
+  return record;
+}
+
+RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
+                     const Budget& budget, const Result& result, const RunContext& context,
+                     const std::string& time_utc) {
+  RunRecord record = planned_record(loaded, cell, result.options, base_seed, budget, context, time_utc);
+  record.kind = result.termination == Termination::NotApplicable ? "skipped" : "run";
   record.termination = to_string(result.termination);
   record.message = result.message;
   if (result.check)
@@ -175,6 +233,7 @@ RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint
       if (!id.parameters.empty()) record.series.merge(identifiability_series(id));
       const std::string note = identifiability_note(loaded.problem, id, what);
       if (!note.empty()) record.notes.push_back(note);
+      describe_trust(loaded, result.x, record);
     }
   }
   describe_optima(result.optima, record);
@@ -277,7 +336,7 @@ std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs, Wa
     if (std::filesystem::is_directory(path)) path /= "runs.jsonl";
     if (!std::filesystem::exists(path))
       throw DataError(fmt::format("{}: there is no such file", path.string()));
-    for (RunRecord& r : read_records(path.string())) {
+    for (RunRecord& r : is_record_store(path) ? read_store(path) : read_records(path.string())) {
       if (seen.insert(sha256(to_json_line(r))).second)
         records.push_back(std::move(r));
       else

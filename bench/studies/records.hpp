@@ -11,6 +11,12 @@
 
 namespace odobench {
 
+// What a run is, before it begins; `options`: every one with the value in force. Its record_key() is that of
+// the record of its result.
+RunRecord planned_record(const LoadedProblem& loaded, const RunCell& cell, const OptionValues& options,
+                         std::uint64_t base_seed, const Budget& budget, const RunContext& context,
+                         const std::string& time_utc);
+
 // Parameters count as on a bound within 1e-6 of the width of their box.
 RunRecord run_record(const LoadedProblem& loaded, const RunCell& cell, std::uint64_t base_seed,
                      const Budget& budget, const Result& result, const RunContext& context,
@@ -42,9 +48,9 @@ RunRecord study_record(const std::string& problem, const std::string& dataset, c
 // appearance.
 std::vector<const RunRecord*> best_of_rows(const std::vector<RunRecord>& records);
 
-// Records of .jsonl files, or of runs.jsonl in folders, in the order given. Throws DataError when one does
-// not exist or nothing is in them, std::runtime_error "file:line: ..." on a bad record. One that is there
-// twice counts once, with a note.
+// Records of .jsonl files, of runs.jsonl in folders, or of stores of campaigns, in the order given. Throws
+// DataError when one does not exist or nothing is in them, std::runtime_error "file:line: ..." on a bad
+// record. One that is there twice counts once, with a note.
 std::vector<RunRecord> read_all_records(const std::vector<std::string>& runs, Watcher& watcher);
 
 }  // namespace odobench

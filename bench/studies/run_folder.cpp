@@ -1,12 +1,16 @@
 #include "bench/studies/run_folder.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <cstdint>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "base/json_node.hpp"
 #include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/parameter_files.hpp"
@@ -20,6 +24,29 @@ constexpr std::array kSaved{Format::Console, Format::Markdown, Format::Csv, Form
 
 fs::path table_file(const fs::path& folder, Format format) {
   return folder / ("tables." + file_extension(format));
+}
+
+constexpr const char* kCopy = "runs.before_resume.jsonl";
+constexpr std::uintmax_t kLargestRecords = std::uintmax_t{1} << 33;
+
+// The whole lines of a file that no other process writes to. Throws std::invalid_argument when one does.
+std::string unlocked_text(const fs::path& file, Watcher& watcher) {
+  std::error_code e;
+  if (!fs::exists(file, e)) return "";
+  const int descriptor = open_regular(file);
+  try {
+    lock_place(descriptor, file, std::chrono::milliseconds(0));
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  std::string text = read_file(file, kLargestRecords);
+  ::close(descriptor);
+  const std::size_t whole = text.empty() ? 0 : text.rfind('\n') + 1;  // npos + 1 is 0
+  if (whole < text.size())
+    watcher.note(fmt::format("{}: the last record is cut off and left out", shown_path(file)));
+  text.resize(whole);
+  return text;
 }
 
 // What belongs to the records of a folder, runs.jsonl first.
@@ -63,6 +90,40 @@ void RunFolder::open() {
     std::error_code error;  // what cannot be removed cannot be replaced either, which is reported then
     if (file != file_->path()) fs::remove(file, error);
   }
+}
+
+std::vector<RunRecord> RunFolder::stored(Watcher& watcher) const {
+  std::vector<RunRecord> records;
+  for (const fs::path& file : {folder_ / kCopy, folder_ / "runs.jsonl"}) {
+    const std::string text = keeps() ? unlocked_text(file, watcher) : "";
+    std::size_t number = 0;
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = text.find('\n', begin);
+      const std::string_view line = std::string_view(text).substr(begin, end - begin);
+      begin = end + 1;
+      ++number;
+      if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+      records.push_back(record_from(JsonNode::parse_line(line, file, number)));
+    }
+  }
+  return records;
+}
+
+void RunFolder::resume(const std::vector<RunRecord>& records) {
+  if (!keeps()) return;
+  std::string text;
+  for (const RunRecord& r : records) text += to_json_line(r) + "\n";
+  const fs::path copy = folder_ / kCopy;
+  write_file(copy, text);  // open() empties the file
+  std::error_code ignored;
+  try {
+    open();
+  } catch (...) {
+    fs::remove(copy, ignored);
+    throw;
+  }
+  file_->replace(text);
+  fs::remove(copy, ignored);
 }
 
 void RunFolder::append(const RunRecord& record) {

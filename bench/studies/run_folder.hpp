@@ -25,6 +25,7 @@ class RunFolder {
   RunFolder(std::filesystem::path folder, bool overwrite, const char* option = "--out");
 
   bool keeps() const { return !folder_.empty(); }
+  const std::filesystem::path& path() const { return folder_; }
 
   // Throws std::invalid_argument when the folder holds runs, their tables or tracks already and they may not
   // be replaced, or something in their place that is no regular file: before long work.
@@ -33,6 +34,11 @@ class RunFolder {
   // Creates the folder and its runs.jsonl; tables and tracks of earlier records are removed. Throws
   // std::invalid_argument when that is not possible, or when the file exists and may not be replaced.
   void open();
+  // For runs that go on, in a folder that may be overwritten: the records that are there, without a last
+  // line that a kill cut (a note says so); and open() with these as the records so far, which a kill does
+  // not lose. Both throw std::invalid_argument while another process writes there.
+  std::vector<RunRecord> stored(Watcher& watcher) const;
+  void resume(const std::vector<RunRecord>& records);
   // After open(). Throws DataError when the disc is full or the like; a part of a line is taken back then.
   void append(const RunRecord& record);
   // Puts these in the place of all records so far.

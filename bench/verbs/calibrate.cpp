@@ -11,6 +11,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/trust_options.hpp"
 #include "bench/studies/importing/calibrate_study.hpp"
 #include "bench/studies/records.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
@@ -29,6 +30,8 @@ struct CalibrateOptions {
   std::vector<std::string> logs;
   std::string map, robot, name, out = "calibration";
   std::vector<std::string> nominal, messages, accept;
+  CalibrationChoice calibration = screened();
+  ValidationChoice validation;
   double per_turn = 0;
   bool keep_cut = false, overwrite = false, quiet = false;
   std::string format = "console";
@@ -51,10 +54,17 @@ void add_options(CLI::App& app, CalibrateOptions& o) {
   app.add_option("--msg", o.messages, "definition of a message that a log lacks; may be given again")
       ->type_name("FILE.msg")
       ->allow_extra_args(false);
+  add_value(app, "--cost", "NAME",
+            "every_sample, final_pose, segments, optiodom [every_sample; segments where the reference is "
+            "another odometry]",
+            [&o](const std::string& text) { o.calibration.cost = cost_kind(text); });
+  app.add_flag("--mount", o.calibration.mount, "fit the place of the tracked frame with the parameters");
   app.add_option("--accept", o.accept,
                  "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
       ->type_name("KIND,...")
       ->allow_extra_args(false);
+  add_validation(app, o.validation);
+  add_screen(app, o.calibration.screen);
   app.add_flag("--keep-cut", o.keep_cut, "of a log that is cut off take what stands before");
   app.add_option("--out", o.out, "folder for map, set, results and page [calibration]")->type_name("DIR");
   app.add_flag("--overwrite", o.overwrite, "replace what is there");
@@ -78,6 +88,8 @@ CalibrateStudy study_of(const CalibrateOptions& o) {
   study.options.keep_cut = o.keep_cut;
   study.options.messages.assign(o.messages.begin(), o.messages.end());
   study.accept = o.accept;
+  study.validation = o.validation;
+  study.calibration = o.calibration;
   study.out = o.out;
   study.overwrite = o.overwrite;
   return study;
@@ -88,7 +100,9 @@ ExitCode calibrate_command(const CalibrateOptions& options, const Catalogue& cat
   TerminalWatcher watcher(options.quiet);
   const Calibrated done = calibrate_logs(study_of(options), catalogue, watcher, InterruptGuard::stop());
   std::vector<Table> tables = comparison_tables(done.records, notes_of_best(done.records));
-  static const std::set<std::string> shown_here = {"parameters", "totals", "fit"};
+  static const std::set<std::string> shown_here = {"verdict",   "parameters", "totals",     "determined",
+                                                   "intervals", "new_drives", "validation", "folds",
+                                                   "fit",       "noise",      "noise_kinds"};
   std::erase_if(tables, [](const Table& table) { return !shown_here.contains(table.id); });
   print_tables(tables, format);
   for (const std::filesystem::path& file : done.files) note(file.string());

@@ -37,6 +37,7 @@ void add_options(CLI::App& app, EvaluateOptions& o) {
          "write the paths that the parameters give as CSV, for plots; - for standard output, without tables")
       ->type_name("FILE.CSV");
   add_calibration(app, o.study.calibration);
+  add_screen(app, o.study.calibration.screen);
   add_classical(app, o.study.classical);
   add_kernel(app, o.study.kernel, kLastBits);
   app.add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");

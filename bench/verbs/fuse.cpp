@@ -31,6 +31,11 @@ void add_options(CLI::App& app, FuseOptions& o) {
                  "JSON file: the sensors, their errors, what the filter believes")
       ->required()
       ->type_name("FILE");
+  app.add_option(
+         "--odometry-noise", o.study.odometry_noise,
+         "what the filter believes of the wheels: measured (on these drives), total (with what repeats), "
+         "file, or V,W of a sample, m/s and rad/s [file where it has \"wheels\", else total]")
+      ->type_name("measured|total|file|V,W");
   app.add_option_function<std::string>(
          "--seed", [&o](const std::string& text) { o.study.seed = seed_number("--seed", text); },
          "of the synthetic sensors [that of the file]")

@@ -154,10 +154,10 @@ ExitCode propose(const ImportOptions& options) {
   return ExitCode::Success;
 }
 
-ExitCode save(const Dataset& dataset, const ImportOptions& options) {
+ExitCode save(const Dataset& dataset, const ImportOptions& options, const SetSensors& sensors = {}) {
   if (!options.quiet)
     for (const std::string& text : dataset.notes) note(text);
-  save_announced(dataset, options.out, options.overwrite, options.json);
+  save_announced(dataset, options.out, options.overwrite, options.json, false, sensors);
   TerminalWatcher watcher(options.quiet);
   told_findings(inspect_recordings(dataset.robot, dataset.recordings), options.out, watcher);
   return ExitCode::Success;
@@ -209,7 +209,7 @@ ExitCode import_of_logs(const ImportOptions& options, const Catalogue& catalogue
   ImportedLogs imported = import_logs(study, watcher, InterruptGuard::stop());
   if (!options.quiet)
     for (const std::string& line : imported.report) note(line);
-  return save(imported.dataset, options);
+  return save(imported.dataset, options, imported.sensors);
 }
 
 bool names_importer(const ImportOptions& options, const Catalogue& catalogue) {

@@ -11,6 +11,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/options/common_options.hpp"
 #include "bench/studies/scenario_tables.hpp"
+#include "bench/verbs/suite_tables.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/robots/layouts.hpp"
 #include "problems/robots/wheeled_robot.hpp"
@@ -20,13 +21,13 @@ namespace odobench {
 namespace {
 
 struct ListOptions {
-  std::string what;  // solvers | problems | robots | data | scenarios
+  std::string what;  // solvers | problems | suites | robots | data | scenarios
   std::string data;  // with `data`, `scenarios`: the one to describe; empty: known places
   std::string format = "console";
 };
 
 void add_options(CLI::App& app, ListOptions& o) {
-  app.add_option("what", o.what, "solvers, problems, robots, data or scenarios")->required();
+  app.add_option("what", o.what, "solvers, problems, suites, robots, data or scenarios")->required();
   app.add_option("set", o.data, "with data or scenarios: the one to describe [known places]");
   add_format(app, o.format);
 }
@@ -89,7 +90,14 @@ std::vector<Table> problem_tables(const Catalogue& catalogue) {
       problem_table("problems.nist", "Certified regression problems (NIST StRD): nist:NAME/START",
                     "All of them: --problem='nist:*'."),
       problem_table("problems.mgh", "More, Garbow, Hillstrom (1981): mgh:NAME, mgh:NAME/10, mgh:NAME/100",
-                    "All of them: --problem='mgh:*'; from the standard starts only: 'mgh:*[!0]'.")};
+                    "All of them: --problem='mgh:*'; from the standard starts only: 'mgh:*[!0]'."),
+      problem_table("problems.bbob", "BBOB (2009): bbob:f1 to bbob:f24, as in bbob:f1[n=5,instance=3]",
+                    "Fifteen instances of all of them: --problem='bbob:*[n=5,instance=1..15]'."),
+      problem_table("problems.mw", "More, Wild (2009): mw:NAME, mw:NAME/10",
+                    "All of them: --problem='mw:*'."),
+      problem_table("problems.robots",
+                    "Calibrations of simulated robots, as in robots:differential[instance=3]",
+                    "All of them: --problem='robots:*'.")};
   for (const ProblemEntry& entry : catalogue.problems()) {
     const std::string id = "problems." + entry.about.family;
     auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.id == id; });
@@ -234,7 +242,7 @@ std::vector<Table> set_tables(const std::string& path) {
 
 ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
-  const std::vector<std::string> known = {"solvers", "problems", "robots", "data", "scenarios"};
+  const std::vector<std::string> known = {"solvers", "problems", "suites", "robots", "data", "scenarios"};
   if (!options.data.empty() && options.what != "data" && options.what != "scenarios")
     throw std::invalid_argument(
         fmt::format("bench list {}: '{}' is not expected here", options.what, options.data));
@@ -242,6 +250,8 @@ ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
     print_tables(solver_tables(catalogue), format);
   } else if (options.what == "problems") {
     print_tables(problem_tables(catalogue), format);
+  } else if (options.what == "suites") {
+    print_tables(suite_tables(catalogue), format);
   } else if (options.what == "data") {
     print_tables(options.data.empty() ? known_data_tables() : set_tables(options.data), format);
   } else if (options.what == "robots") {
@@ -250,8 +260,8 @@ ExitCode list_command(const ListOptions& options, const Catalogue& catalogue) {
     print_tables(scenario_tables(options.data), format);
   } else {
     throw std::invalid_argument(
-        fmt::format("bench list '{}'{}: expected solvers, problems, robots, data or scenarios", options.what,
-                    did_you_mean(options.what, known)));
+        fmt::format("bench list '{}'{}: expected solvers, problems, suites, robots, data or scenarios",
+                    options.what, did_you_mean(options.what, known)));
   }
   return ExitCode::Success;
 }

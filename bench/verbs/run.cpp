@@ -11,8 +11,10 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/trust_options.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/records.hpp"
+#include "bench/studies/trust/trust_study.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
 
 namespace odobench {
@@ -23,12 +25,14 @@ constexpr const char* kRunExamples = R"(Examples:
   bench --solver=pso,cmaes --repeat=20 --seed=7 --max-evals=30000 --out=results --format=md
   bench --solver=lm,ip --start=random --repeat=20
   bench --solver=lm --data=diff.json --cost=segments --classical --start=censi
+  bench --solver=lm --data=set.json --validate=kfold:5 --bootstrap=500 --out=results
   bench --config=experiment.json --threads=1
 A configuration file holds these options without dashes: {"solver": ["lm", "pso[swarm=60]"], "repeat": 10}
 Every method also ends by itself; 'bench list solvers' shows its options.)";
 
 struct RunOptions {
   SolverStudy study;
+  TrustChoice trust;
   std::string out;  // folder for records and tables; empty: none
   bool overwrite = false;
   std::string format = "console";
@@ -50,6 +54,7 @@ void add_options(CLI::App& app, RunOptions& options) {
       ->type_name("LIST")
       ->allow_extra_args(false);
   add_calibration(app, options.study.calibration);
+  add_screen(app, options.study.calibration.screen);
   add_value(app, "--dimension", "N", "dimension of classic problems", [&options](const std::string& text) {
     options.study.dimension = static_cast<int>(whole_number("--dimension", text, 1, 1000));
   });
@@ -66,10 +71,11 @@ void add_options(CLI::App& app, RunOptions& options) {
       ->allow_extra_args(false);
   add_value(app, "--start", "nominal|random|METHOD",
             "where runs begin; random starts are shared by all solvers; the result of a classical method of "
-            "the robot, e.g. censi [nominal]",
+            "the robot, e.g. censi [nominal; with a loss the least-squares solution]",
             [&options](const std::string& text) {
               require_start(text);
               options.study.random_start = text == "random";
+              options.study.nominal_start = text == "nominal";
               options.study.start_method = text == "nominal" || text == "random" ? "" : text;
             });
   app.add_flag("--check-derivatives", options.study.check_derivatives,
@@ -79,7 +85,12 @@ void add_options(CLI::App& app, RunOptions& options) {
   app.add_option("--polish", options.study.polish,
                  "solver that goes on from the best point of each run, within its budget")
       ->type_name("SOLVER");
+  add_validation(app, options.trust.validation);
+  add_bootstrap(app, options.trust);
   add_run_folder(app, options.out, options.overwrite);
+  app.add_flag(
+      "--resume", options.study.resume,
+      "go on in --out where an earlier call was ended: its complete runs are kept, missing ones run");
   app.add_option("--format", options.format, "of the tables on standard output [console]")
       ->type_name("console|md|csv|json|latex");
   app.add_option("--config", options.config, "options from a JSON or INI/TOML file; the command line wins")
@@ -114,11 +125,25 @@ ExitCode outcome(const RunOptions& options, const SolverRuns& runs) {
   return ExitCode::Success;
 }
 
+void require_resumable(const RunOptions& options) {
+  if (!options.study.resume) return;
+  if (options.out.empty()) throw std::invalid_argument("--resume: --out is missing, the folder to go on in");
+  if (options.overwrite)
+    throw std::invalid_argument("--resume: it contradicts --overwrite, expected one of them");
+  if (!options.study.start_method.empty())
+    throw std::invalid_argument(
+        fmt::format("--resume: not with --start={}, whose result is not part of the records",
+                    options.study.start_method));
+}
+
 ExitCode run_command(const RunOptions& options, const Catalogue& catalogue) {
   const Format format = parse_format(options.format);
+  require_resumable(options);
   TerminalWatcher watcher(options.quiet);
-  RunFolder folder(options.out, options.overwrite);
-  const SolverRuns runs = run_solvers(options.study, catalogue, folder, watcher, InterruptGuard::stop());
+  RunFolder folder(options.out, options.overwrite || options.study.resume);
+  const Stop stop = InterruptGuard::stop();
+  TrustStudy trust(options.trust, options.study, catalogue, folder, watcher, stop);
+  const SolverRuns runs = run_solvers(trust.with(options.study), catalogue, folder, watcher, stop);
   std::vector<Table> tables;
   if (runs.derivatives) tables.push_back(runs.derivatives->table);
   if (runs.derivatives && !runs.derivatives->agrees) {
@@ -130,6 +155,13 @@ ExitCode run_command(const RunOptions& options, const Catalogue& catalogue) {
     tables.push_back(std::move(table));
   folder.save(tables);
   print_tables(tables, format);
+  if (trust.interrupted()) {
+    const bool resumable = options.trust.bootstrap > 0 && !options.out.empty();
+    note(fmt::format("interrupted: all runs are complete, their validation{} is not{}",
+                     options.trust.bootstrap > 0 ? " or bootstrap" : "",
+                     resumable ? "; the same call with --overwrite goes on with the bootstrap" : ""));
+    return ExitCode::Interrupted;
+  }
   return outcome(options, runs);
 }
 

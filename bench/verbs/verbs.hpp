@@ -16,6 +16,15 @@ namespace odobench {
 // make no sense (nothing is run or written then), DataError on a bad set.
 VerbAction add_run(CLI::App& app);
 
+// `bench campaign FILE --out=STORE`: a matrix of runs, kept in a store, that goes on where it was ended.
+//
+// A table of what was kept and run on standard output. Throws std::invalid_argument on options that make no
+// sense and on a store that belongs to another process or campaign, DataError on a bad campaign file.
+VerbAction add_campaign(CLI::App& app);
+
+// `bench store info|query|export|import STORE`: what is in a store, and records in and out.
+VerbAction add_store(CLI::App& app);
+
 // `bench calibrate LOG...`: from logs to parameters in one go.
 //
 // Short tables on standard output; what was assumed on standard error. Throws std::invalid_argument where
@@ -109,6 +118,13 @@ VerbAction add_tune(CLI::App& app);
 // truth.csv, state.csv and robot.json. Throws std::invalid_argument on options that do not fit the scenario
 // or on files that are there already, DataError on a bad scenario.
 VerbAction add_simulate(CLI::App& app);
+
+// `bench models`: nuisance parameters and richer models compared, fitted and held out.
+//
+// Table: J, totals of largest errors, of each recording by the fit without its repetition and without its
+// trajectory, what each extra is taken for and which model to use. Throws std::invalid_argument on models
+// that are none or do not suit the robot, DataError on a bad set.
+VerbAction add_models(CLI::App& app);
 
 // `bench plan`: which parameters a set of drives can determine, and which drives to add.
 //

@@ -146,6 +146,8 @@ void read_rules(const JsonNode& node, Robot& robot) {
     robot.table.rule = twist_rule(node.at("twist").text());
   }
   if (node.has("integration")) robot.rule = robots::integration_rule(node.at("integration").text());
+  if (node.has("model"))
+    for (const JsonNode& name : node.at("model").elements()) robot.model.push_back(name.text());
 }
 
 }  // namespace
@@ -167,7 +169,8 @@ Robot read_robot(const JsonNode& node, int schema) {
     return robot;
   }
   const std::string kinematics = node.at("kinematics").text();
-  node.allow_only({"name", "kinematics", "parameters", "dimensions", "wheels", "twist", "integration"});
+  node.allow_only(
+      {"name", "kinematics", "parameters", "dimensions", "wheels", "twist", "integration", "model"});
   if (kinematics != kOwnWheels && node.has("wheels"))
     node.fail("\"wheels\" beside a class", "them with \"kinematics\": \"wheels\" only");
   if (kinematics == kOwnWheels && node.has("dimensions"))
@@ -187,7 +190,7 @@ Robot read_robot(const JsonNode& node, int schema) {
 bool fits_schema_1(const Robot& robot) {
   return robot.kinematics == "4wis4wid" && robot.ties.empty() && robot.dimensions.empty() &&
          robot.parameters.size() == 3 * kWheelCount && robot.table.rule == TwistRule::Mean &&
-         robot.rule == robots::IntegrationRule::Euler;
+         robot.rule == robots::IntegrationRule::Euler && robot.model.empty();
 }
 
 namespace {
@@ -238,6 +241,7 @@ Json robot_json(const Robot& robot, int schema) {
   if (schema > 1) {
     json["twist"] = kTwistRuleNames[static_cast<std::size_t>(robot.table.rule)];
     json["integration"] = robots::name_of(robot.rule);
+    if (!robot.model.empty()) json["model"] = robot.model;
     if (!robot.dimensions.empty()) json["dimensions"] = robot.dimensions;
     if (own) json["wheels"] = wheels_json(robot.table);
   }

@@ -21,6 +21,8 @@ struct Robot {
   robots::IntegrationRule rule = robots::IntegrationRule::Euler;
   // What the class has beside parameters, where it is not as by default: {"b", 0.5} of a skid-steered robot.
   std::map<std::string, double> dimensions;
+  // Names of richer models that calibrations of this robot use (docs/models.md), as the set states them.
+  std::vector<std::string> model;
   // Parameters that are another one: {"r_left", "r_right"}. They are not among the parameters.
   std::vector<std::pair<std::string, std::string>> ties;
 };

@@ -32,17 +32,25 @@ CostKind cost_kind(std::string_view name) {
 
 std::string CalibrationOptions::text() const {
   std::string text = fmt::format("{}, {}", name_of(cost), robots::name_of(rule));
-  if (cost == CostKind::Segments || cost == CostKind::Optiodom)
-    if (distance != 0.5) text += fmt::format(", every {:g} m", distance);
+  if (cost == CostKind::Segments || cost == CostKind::Optiodom) {
+    if (piece_seconds > 0)
+      text += fmt::format(", pieces of {:g} s", piece_seconds);
+    else if (piece_metres > 0)
+      text += fmt::format(", pieces of {:g} m", piece_metres);
+    else if (distance != 0.5)
+      text += fmt::format(", every {:g} m", distance);
+  }
   if (position_weight != 1 || heading_weight != 1)
     text += fmt::format(", weights {:g}:{:g}", position_weight, heading_weight);
   if (mount) text += ", mount";
+  if (loss.robust()) text += ", " + loss.text();
+  if (model.any()) text += ", model:" + model.text();
   return text;
 }
 
 bool CalibrationOptions::as_in_thesis() const {
   return cost == CostKind::EverySample && rule == robots::IntegrationRule::Euler && position_weight == 1 &&
-         heading_weight == 1 && !mount && from_origin;
+         heading_weight == 1 && !mount && from_origin && !model.any();
 }
 
 }  // namespace odobench

@@ -9,6 +9,7 @@
 
 #include "base/angle.hpp"
 #include "datasets/robot_4wis4wid.hpp"
+#include "problems/calibration/robust_form.hpp"
 #include "problems/calibration/structure.hpp"
 
 namespace odobench {
@@ -95,13 +96,41 @@ CalibrationProblem::CalibrationProblem(const Robot& robot, std::vector<Recording
     check(parameters_, recordings_);
     structure_ = std::make_unique<Structure>(recordings_, nominal_values(parameters_), kernel_);
   } else {
+    choose_form(robot, options);
+  }
+  if (options.loss.robust()) robust_ = std::make_unique<RobustForm>(robot, recordings_, options, kernel_);
+  set_rounding_floor();
+}
+
+void CalibrationProblem::choose_form(const Robot& robot, const CalibrationOptions& options) {
+  if (!options.model.any()) {
     if (options.mount) add_mount(parameters_);
     validate(parameters_);
     check_recordings(recordings_);
     general_ =
         std::make_unique<WheeledForm>(robots::WheeledRobot(robot.table), recordings_, options, kernel_);
+    return;
   }
-  set_rounding_floor();
+  const Robot richer = with_model(robot, options.model);
+  parameters_ = richer.parameters;
+  for (const RobotParameter& p : parameters_beyond_table(options.model, options.mount))
+    parameters_.push_back(p);
+  validate(parameters_);
+  check_recordings(recordings_);
+  robots::WheeledRobot wheels(richer.table);
+  // Tables alone have their other forms: linear ones are faster, and know segments.
+  CalibrationOptions plain = options;
+  if (options.model.anchor) plain.from_origin = false;
+  const bool table = !options.model.beyond_table() && (wheels.is_linear() || !ModelForm::serves(options));
+  if (table)
+    general_ = std::make_unique<WheeledForm>(std::move(wheels), recordings_, plain, kernel_);
+  else
+    extended_ = std::make_unique<ModelForm>(std::move(wheels), recordings_, plain, kernel_);
+}
+
+const std::vector<std::size_t>& CalibrationProblem::rows(std::size_t recording) const {
+  if (structure_) throw std::logic_error("the structured form has no list of rows");
+  return extended_ ? extended_->rows(recording) : general_->rows(recording);
 }
 
 void CalibrationProblem::set_rounding_floor() {
@@ -114,6 +143,7 @@ void CalibrationProblem::set_rounding_floor() {
     }
   constexpr double kUnit = 2 * std::numeric_limits<double>::epsilon();
   exact_floor_ *= kUnit * kUnit * std::max(options_.position_weight, options_.heading_weight);
+  if (robust_) exact_floor_ *= robust_->floor_factor();
 }
 
 CalibrationProblem::~CalibrationProblem() = default;
@@ -121,7 +151,9 @@ CalibrationProblem::CalibrationProblem(CalibrationProblem&&) noexcept = default;
 CalibrationProblem& CalibrationProblem::operator=(CalibrationProblem&&) noexcept = default;
 
 double CalibrationProblem::cost(const ConstVectorRef& z) const {
+  if (robust_) return robust_->cost(z);
   if (general_) return general_->cost(z);
+  if (extended_) return extended_->cost(z);
   return std::max(structure_->cost(z), 0.0);  // not-a-number stays
 }
 
@@ -130,8 +162,9 @@ double CalibrationProblem::rounding_floor(const ConstVectorRef& z) const {
 }
 
 void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef costs) const {
-  if (general_) {
-    for (Eigen::Index k = 0; k < candidates.cols(); ++k) costs[k] = general_->cost(candidates.col(k));
+  if (robust_) return robust_->batch_cost(candidates, costs);
+  if (!structure_) {
+    for (Eigen::Index k = 0; k < candidates.cols(); ++k) costs[k] = cost(candidates.col(k));
     return;
   }
   structure_->batch_cost(candidates, costs);
@@ -139,21 +172,30 @@ void CalibrationProblem::batch_cost(const ConstMatrixRef& candidates, VectorRef 
 }
 
 void CalibrationProblem::normal_equations(const ConstVectorRef& z, NormalEquations& out) const {
+  if (robust_) return robust_->normal_equations(z, out);
   if (general_) return general_->normal_equations(z, out);
+  if (extended_) return extended_->normal_equations(z, out);
   structure_->normal_equations(z, out);
   out.cost = std::max(out.cost, 0.0);
 }
 
 Eigen::Index CalibrationProblem::residual_count() const {
   if (general_) return general_->residual_count();
+  if (extended_) return extended_->residual_count();
   Eigen::Index count = 0;
   for (const Recording& r : recordings_) count += 3 * (static_cast<Eigen::Index>(r.size()) - 1);
   return count;
 }
 
+Eigen::Index CalibrationProblem::residual_count(std::size_t recording) const {
+  if (general_) return general_->residual_count(recording);
+  if (extended_) return extended_->residual_count(recording);
+  return 3 * (static_cast<Eigen::Index>(recordings_.at(recording).size()) - 1);
+}
+
 PoseTrack CalibrationProblem::integrate(std::size_t recording, const ConstVectorRef& z) const {
-  if (!general_) return direct::integrate(recordings_.at(recording), z);
-  const Matrix track = general_->track(recording, z);
+  if (structure_) return direct::integrate(recordings_.at(recording), z);
+  const Matrix track = general_ ? general_->track(recording, z) : extended_->track(recording, z);
   PoseTrack q;
   for (Eigen::Index k = 0; k < track.cols(); ++k) {
     q.x.push_back(track(0, k));
@@ -164,7 +206,9 @@ PoseTrack CalibrationProblem::integrate(std::size_t recording, const ConstVector
 }
 
 void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
+  if (robust_) return robust_->residuals(z, r);
   if (general_) return general_->residuals(z, r);
+  if (extended_) return extended_->residuals(z, r);
   Eigen::Index row = 0;
   for (const Recording& recording : recordings_) {
     const PoseTrack q = direct::integrate(recording, z);
@@ -174,7 +218,9 @@ void CalibrationProblem::residuals(const ConstVectorRef& z, VectorRef r) const {
 }
 
 void CalibrationProblem::residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const {
+  if (robust_) return robust_->residuals_and_jacobian(z, r, j);
   if (general_) return general_->residuals_and_jacobian(z, r, j);
+  if (extended_) return extended_->residuals_and_jacobian(z, r, j);
   structure_->residuals_and_jacobian(recordings_, z, r, j);
 }
 

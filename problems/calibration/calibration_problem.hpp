@@ -20,11 +20,14 @@
 #include "datasets/recording.hpp"
 #include "datasets/robots/robot.hpp"
 #include "problems/calibration/calibration_options.hpp"
+#include "problems/calibration/model_form.hpp"
 #include "problems/calibration/wheeled_form.hpp"
 #include "problems/instruction_set.hpp"
 #include "problems/problem.hpp"
 
 namespace odobench {
+
+class RobustForm;
 
 inline constexpr Eigen::Index kCalibrationParameters = 12;
 
@@ -51,7 +54,9 @@ double cost(std::span<const Recording> recordings, const ConstVectorRef& z);
 // r_i a_i / (a_i^2+b_i^2) the heading is linear in (P, Q) and the body velocity is linear in r, so an
 // evaluation needs no trigonometry of the steering angles, the heading part of J is a constant quadratic
 // form, and the Jacobian is analytic. Everything else has the general form of
-// problems/calibration/wheeled_form.hpp, whose Jacobian is analytic, too.
+// problems/calibration/wheeled_form.hpp, or with options.model that of problems/calibration/models/, whose
+// Jacobians are analytic, too. A robust loss (problems/calibration/robust_form.hpp) changes what their
+// residuals count for.
 //
 // Immutable; every member may be called from several threads.
 class CalibrationProblem {
@@ -64,7 +69,9 @@ class CalibrationProblem {
                      InstructionSet kernel = widest_instruction_set());
   // Any robot and cost; the structured form where options.as_in_thesis() and the robot is the thesis' with
   // the mean. With options.mount three parameters more: mount_x, mount_y [m], mount_yaw [rad], within 0.25 m
-  // and 0.2 rad. Throws std::invalid_argument as above, and for what the robot needs and a recording lacks.
+  // and 0.2 rad; with options.model those of with_model() and parameters_beyond_table(). Throws
+  // std::invalid_argument as above, for what the robot needs and a recording lacks, and for models that the
+  // robot, the cost or the rule does not allow.
   CalibrationProblem(const Robot& robot, std::vector<Recording> recordings, const CalibrationOptions& options,
                      InstructionSet kernel = widest_instruction_set());
   ~CalibrationProblem();
@@ -76,6 +83,8 @@ class CalibrationProblem {
   const CalibrationOptions& options() const { return options_; }
   double cost(const ConstVectorRef& z) const;
   Eigen::Index residual_count() const;
+  // Of one recording; its residuals stand together, in the order of the recordings.
+  Eigen::Index residual_count(std::size_t recording) const;
   void residuals(const ConstVectorRef& z, VectorRef r) const;
   void residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const;
   void normal_equations(const ConstVectorRef& z, NormalEquations& out) const;
@@ -87,10 +96,14 @@ class CalibrationProblem {
 
   const std::vector<Recording>& recordings() const { return recordings_; }
   InstructionSet kernel() const { return kernel_; }
-  // Whether the structured form evaluates J.
+  // Whether the structured form evaluates J, or the squares in it where the loss is a robust one.
   bool structured() const { return structure_ != nullptr; }
-  // Null where structured.
+  // Null where another form evaluates J.
   const WheeledForm* general() const { return general_.get(); }
+  const ModelForm* extended() const { return extended_.get(); }
+  // Stamps of the residuals' rows (of Segments: where pieces begin and end), the start first. Not of the
+  // structured form, whose rows are all stamps: std::logic_error.
+  const std::vector<std::size_t>& rows(std::size_t recording) const;
   PoseTrack integrate(std::size_t recording, const ConstVectorRef& z) const;
   // One entry per recording, for the error tables, over the samples with a reference.
   std::vector<MaxErrors> max_errors(const ConstVectorRef& z) const;
@@ -98,6 +111,7 @@ class CalibrationProblem {
  private:
   struct Structure;
   void set_rounding_floor();
+  void choose_form(const Robot& robot, const CalibrationOptions& options);
   std::vector<ParameterInfo> parameters_;
   std::vector<Recording> recordings_;
   CalibrationOptions options_;
@@ -105,6 +119,8 @@ class CalibrationProblem {
   double exact_floor_ = 0;  // F
   std::unique_ptr<Structure> structure_;
   std::unique_ptr<WheeledForm> general_;
+  std::unique_ptr<const RobustForm> robust_;  // of another loss than the squared one
+  std::unique_ptr<ModelForm> extended_;
 };
 
 }  // namespace odobench

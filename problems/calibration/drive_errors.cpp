@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
+#include "problems/calibration/robust_form.hpp"
 
 namespace odobench {
 namespace {
@@ -69,11 +70,13 @@ double cost_of_tracks(const CalibrationProblem& problem, const std::vector<PoseT
   if (problem.structured()) throw std::invalid_argument("cost_of_tracks: the problem has no rows");
   const CalibrationOptions& options = problem.options();
   const double heading_weight = options.cost == CostKind::Optiodom ? 0 : options.heading_weight;
-  double cost = 0;
+  const Eigen::Index row = options.cost == CostKind::Optiodom ? 2 : 3;
+  double cost = 0, robust = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Recording& recording = problem.recordings()[i];
-    const std::vector<std::size_t>& rows = problem.general()->rows(i);
+    const std::vector<std::size_t>& rows = problem.rows(i);
     const bool wrapped = !recording.reference.sample.empty();
+    Vector weighted(row * static_cast<Eigen::Index>(std::max<std::size_t>(rows.size(), 1) - 1));
     for (std::size_t r = 1; r < rows.size(); ++r) {
       const Eigen::Vector3d measured = reference_at(recording.reference, rows[r]);
       const Eigen::Vector3d reckoned = track_pose(tracks[i], rows[r]);
@@ -83,9 +86,14 @@ double cost_of_tracks(const CalibrationProblem& problem, const std::vector<PoseT
             seen_from(reference_at(recording.reference, rows[r - 1]), measured);
       if (wrapped) e[2] = wrapped_angle(e[2]);
       cost += options.position_weight * e.head<2>().squaredNorm() + heading_weight * e[2] * e[2];
+      if (!options.loss.robust()) continue;
+      e.head<2>() *= std::sqrt(options.position_weight);
+      e[2] *= std::sqrt(heading_weight);
+      weighted.segment(row * static_cast<Eigen::Index>(r - 1), row) = e.head(row);
     }
+    if (options.loss.robust()) robust += robust_cost(options.loss, weighted, row);
   }
-  return cost;
+  return options.loss.robust() ? robust : cost;
 }
 
 }  // namespace odobench

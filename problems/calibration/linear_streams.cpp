@@ -18,12 +18,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr long kStepsOfSegment = 256;
 constexpr Index kRowsAtOnce = 512;
 
+}  // namespace
+
 kernel::StepRule step_rule(IntegrationRule rule) {
   if (rule == IntegrationRule::Euler) return kernel::StepRule::Euler;
   return rule == IntegrationRule::Midpoint ? kernel::StepRule::Midpoint : kernel::StepRule::Arc;
 }
-
-}  // namespace
 
 bool LinearStreams::serves(IntegrationRule rule, Index streams) {
   return rule != IntegrationRule::OptiodomOmni && streams >= 1 && streams <= kernel::kMostStreams;

@@ -18,6 +18,9 @@
 
 namespace odobench {
 
+// What the kernels call euler, midpoint and arc.
+kernel::StepRule step_rule(robots::IntegrationRule rule);
+
 class LinearStreams {
  public:
   // No drives yet. `nominal`: M at the nominal parameters. Rules euler, midpoint and arc; at most

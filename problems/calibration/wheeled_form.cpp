@@ -126,6 +126,8 @@ void WheeledForm::choose_rows(const Recording& recording, Drive& drive) const {
     for (std::size_t i = first; i <= last; ++i) entries.push_back(i);
   } else if (options_.cost == CostKind::FinalPose) {
     entries.push_back(last);
+  } else if (options_.piece_seconds > 0 || options_.piece_metres > 0) {
+    return choose_pieces(recording, stamps, drive);
   } else {
     const Vector nominal = robot_.nominal();
     Vector z = Vector::Zero(parameter_count_);
@@ -149,6 +151,32 @@ void WheeledForm::choose_rows(const Recording& recording, Drive& drive) const {
         reference.theta[entries[i]];
   }
   drive.residuals = residuals_per_row() * static_cast<Index>(entries.size());
+}
+
+void WheeledForm::choose_pieces(const Recording& recording, const std::vector<std::size_t>& stamps,
+                                Drive& drive) const {
+  const Reference& reference = recording.reference;
+  const bool by_time = options_.piece_seconds > 0;
+  const double piece = by_time ? options_.piece_seconds : options_.piece_metres;
+  std::vector<std::size_t> entries;
+  double travelled = 0, next = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (by_time)
+      travelled = static_cast<double>(recording.time_us[stamps[i]] - recording.time_us[0]) * 1e-6;
+    else if (i > 0)
+      travelled += std::hypot(reference.x[i] - reference.x[i - 1], reference.y[i] - reference.y[i - 1]);
+    if (travelled < next) continue;
+    entries.push_back(i);
+    next = (std::floor(travelled / piece) + 1) * piece;
+  }
+  drive.rows.clear();
+  drive.reference.resize(3, static_cast<Index>(entries.size()));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    drive.rows.push_back(stamps[entries[i]]);
+    drive.reference.col(static_cast<Index>(i)) << reference.x[entries[i]], reference.y[entries[i]],
+        reference.theta[entries[i]];
+  }
+  drive.residuals = residuals_per_row() * (static_cast<Index>(entries.size()) - 1);
 }
 
 WheeledForm::Point WheeledForm::point(const ConstVectorRef& z, bool derivatives) const {

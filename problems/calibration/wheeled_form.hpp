@@ -40,6 +40,7 @@ class WheeledForm {
   // z: the robot's parameters, then x, y, yaw of the mount where it is free.
   Eigen::Index parameter_count() const { return parameter_count_; }
   Eigen::Index residual_count() const { return residual_count_; }
+  Eigen::Index residual_count(std::size_t recording) const { return drives_.at(recording).residuals; }
   double cost(const ConstVectorRef& z) const;
   void residuals(const ConstVectorRef& z, VectorRef r) const;
   void residuals_and_jacobian(const ConstVectorRef& z, VectorRef r, MatrixRef j) const;
@@ -73,6 +74,8 @@ class WheeledForm {
   Drive prepare(const Recording& recording) const;
   void prepare_fast_cost(InstructionSet kernel);
   void choose_rows(const Recording& recording, Drive& drive) const;
+  // Of options with pieces by time or along the reference.
+  void choose_pieces(const Recording& recording, const std::vector<std::size_t>& stamps, Drive& drive) const;
   Point point(const ConstVectorRef& z, bool derivatives) const;
   Matrix motions(const Drive& drive, const Point& at) const;
   Matrix poses(const Drive& drive, const Point& at) const;

@@ -37,12 +37,14 @@ struct DimensionRule {
 // What is known about a problem without making it.
 struct ClassicEntry {
   std::string name;    // as make_classic_problem takes it
-  std::string family;  // "classic", "nist" or "mgh"
+  std::string family;  // "classic", "nist", "mgh", or a suite: "bbob", "mw", "robots"
   int dimension = 0;   // the usual one
   DimensionRule dimensions;
   int residuals = 0;  // at the usual dimension; 0: the cost is no sum of squares
   std::string source;
   std::optional<double> best_cost;  // lowest known cost in the box at the usual dimension
+  int instances = 0;                // numbered ones, from 1, which is the usual one; 0: there is but one
+  std::string hard = {};            // what makes it hard, in a line
 };
 
 // Every problem, grouped by family, in the order in which lists show them.
@@ -64,8 +66,8 @@ double log_relative_error(const ConstVectorRef& x, const std::vector<Vector>& mi
 inline constexpr double kMostDigits = 11;
 
 // Whether x with cost J is the known answer. nist: problems, whose parameters are certified: log relative
-// error >= 6. Others: J - J* <= max(1e-6 |J*|, 1e-12); their costs are of the order of 1. Throws
-// std::logic_error without a known optimum.
+// error >= 6. bbob: J - J* <= 1e-8, as COCO has it. Others: J - J* <= max(1e-6 |J*|, 1e-12); their costs are
+// of the order of 1. Throws std::logic_error without a known optimum.
 bool reaches_known_optimum(const Problem& problem, const ConstVectorRef& x, double cost);
 
 }  // namespace odobench

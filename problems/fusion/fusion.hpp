@@ -16,6 +16,7 @@
 
 #include "problems/calibration/calibration_problem.hpp"
 #include "problems/kalman/kalman_filter.hpp"
+#include "problems/trust/odometry_noise.hpp"
 
 namespace odobench {
 
@@ -49,10 +50,15 @@ struct WalkingState {
   double walk = 0;
 };
 
+inline constexpr double kLeastWheelSigma = 1e-6;  // m/s, rad/s
+
 struct FusionOptions {
   KalmanOptions filter;
-  double sigma_velocity = 0.01;    // of the wheels' twist, one sample: m/s in x and in y,
-  double sigma_yaw_rate = 0.02;    // rad/s
+  double sigma_velocity = 0.01;  // of the wheels' twist, one sample: m/s in x and in y,
+  double sigma_yaw_rate = 0.02;  // rad/s
+  // Instead of these two: variances linear in the motion of a sample. kLeastWheelSigma is added to all three,
+  // so that a robot at rest keeps a covariance that has an inverse.
+  std::optional<NoiseModel> wheel_noise;
   double initial_position = 1e-3;  // standard deviations of the start, m and rad
   double initial_heading = 1e-3;
   std::optional<WalkingState> gyro_bias;       // rad/s

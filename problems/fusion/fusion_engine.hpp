@@ -1,6 +1,7 @@
 // What fuse() does for one choice of states: a private header of fusion.cpp and the tuning problem.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -182,6 +183,7 @@ class FusionEngine {
     typename Filter::NoiseFactor lq = Filter::NoiseFactor::Zero();
     lq(0, 0) = lq(1, 1) = options_.sigma_velocity * spread;
     lq(2, 2) = options_.sigma_yaw_rate * spread;
+    if (options_.wheel_noise) lq.template topLeftCorner<3, 3>() = wheel_factor(twists_[k], dt);
     if constexpr (Model::kHasBias)
       lq(Model::kBias, Model::kBias) = walking(options_.gyro_bias).walk * std::sqrt(dt);
     if constexpr (Model::kHasScale)
@@ -191,6 +193,21 @@ class FusionEngine {
     PredictionRecord* record = nullptr;
     if (records != nullptr) record = &records->emplace_back();
     filter_.predict(twists_[k], lq, dt, has_reading ? &reading : nullptr, Filter::kNoGate, record);
+  }
+
+  // Of the variances of the twist over `dt`, lower triangular.
+  Eigen::Matrix3d wheel_factor(const Twist& u, double dt) const {
+    Eigen::Matrix3d q = twist_covariance(*options_.wheel_noise, u.vx, u.vy, u.omega, dt);
+    q.diagonal().array() += kLeastWheelSigma * kLeastWheelSigma;
+    return q.llt().matrixL();
+  }
+  // Variance of a sample's yaw rate.
+  double yaw_rate_variance(std::size_t k) const {
+    if (!options_.wheel_noise) return options_.sigma_yaw_rate * options_.sigma_yaw_rate;
+    const double hold = static_cast<double>(recording_.time_us[k + 1] - recording_.time_us[k]) * 1e-6;
+    const Twist& u = twists_[k];
+    return twist_covariance(*options_.wheel_noise, u.vx, u.vy, u.omega, hold)(2, 2) +
+           kLeastWheelSigma * kLeastWheelSigma;
   }
 
   // The gyro's sample in force, judged when it is used first.
@@ -205,8 +222,7 @@ class FusionEngine {
     reading.touches_state = options_.gyro_bias.has_value();  // a bias without variance shares nothing
     if (fresh_gyro_) {
       fresh_gyro_ = false;
-      double variance =
-          options_.sigma_yaw_rate * options_.sigma_yaw_rate + sensor.sigma_rate * sensor.sigma_rate;
+      double variance = yaw_rate_variance(k) + sensor.sigma_rate * sensor.sigma_rate;
       if constexpr (Model::kHasBias) variance += filter_.factor().row(Model::kBias).squaredNorm();
       event.dof = 1;
       event.nis = reading.innovation * reading.innovation / variance;

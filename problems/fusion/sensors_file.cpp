@@ -86,6 +86,11 @@ void read_measured(const JsonNode& node, SyntheticSensor& s) {
       node.at("unit").fail('"' + unit + '"', gyro ? "rad/s or deg/s" : "rad or deg, of headings");
     if (unit.starts_with("deg")) (gyro ? s.rate_scale : s.heading_scale) = kPi / 180;
   }
+  if (node.has("standing")) {
+    const JsonNode standing = node.at("standing");
+    if (!gyro) standing.fail("it of a camera", "it of a yaw_rate");
+    for (const std::string& id : standing.keys()) s.standing[id] = number(standing.at(id), kError);
+  }
   const JsonNode filter = node.at("filter");
   if (gyro) {
     filter.allow_only({"sigma_yaw_rate"});
@@ -103,7 +108,7 @@ SyntheticSensor read_sensor(const JsonNode& node) {
   s.stream.name = node.at("name").text();
   s.stream.kind = read_kind(node.at("type"));
   if (node.has("file")) {
-    node.allow_only({"name", "type", "file", "columns", "unit", "delay_s", "filter"});
+    node.allow_only({"name", "type", "file", "columns", "unit", "standing", "delay_s", "filter"});
     s.timing.delay_s = number_or(node, "delay_s", kTime, 0);
     s.timing.rate_hz = 0;
     read_measured(node, s);
@@ -160,10 +165,13 @@ SensorsFile read_sensors(const std::filesystem::path& path) {
     file.seed = static_cast<std::uint64_t>(seed);
   }
   FusionOptions& o = file.options;
-  const JsonNode wheels = root.at("wheels");
-  wheels.allow_only({"sigma_velocity", "sigma_yaw_rate"});
-  o.sigma_velocity = number(wheels.at("sigma_velocity"), kSigma);
-  o.sigma_yaw_rate = number(wheels.at("sigma_yaw_rate"), kSigma);
+  file.wheels = root.has("wheels");
+  if (file.wheels) {
+    const JsonNode wheels = root.at("wheels");
+    wheels.allow_only({"sigma_velocity", "sigma_yaw_rate"});
+    o.sigma_velocity = number(wheels.at("sigma_velocity"), kSigma);
+    o.sigma_yaw_rate = number(wheels.at("sigma_yaw_rate"), kSigma);
+  }
   if (root.has("start")) {
     const JsonNode start = root.at("start");
     start.allow_only({"sigma_position", "sigma_heading"});

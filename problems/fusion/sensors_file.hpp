@@ -2,7 +2,7 @@
 //   {"seed": 1, "wheels": {"sigma_velocity", "sigma_yaw_rate"}, "start": {"sigma_position", "sigma_heading"},
 //    "sensors": [{"name", "type": "pose|heading|relative_pose|yaw_rate", "rate_hz", "delay_s", "missing",
 //                 "errors": {what the synthetic device does}, "filter": {what the filter believes}}, ...]
-//     (measured: "file": "gyro_{recording}.csv", "columns", "unit" instead of rate_hz, missing, errors),
+//     (measured: "file": "gyro_{recording}.csv", "columns", "unit", "standing" instead of rate_hz, errors),
 //    "gyro_bias": {"initial", "walk"}, "odometry_scale": {...}, "gate_probability", "max_delay_s",
 //    "unscented": {"alpha", "beta", "kappa"}}
 #pragma once
@@ -26,6 +26,7 @@ struct SyntheticSensor {
   std::string file;
   std::map<std::string, std::string> columns;
   double rate_scale = 1, heading_scale = 1;  // to rad/s and rad
+  std::map<std::string, double> standing;    // by recording: what a gyro said standing, taken off [rad/s]
   StreamTiming timing;
   CameraErrors camera;
   GyroErrors gyro;
@@ -36,6 +37,7 @@ struct SensorsFile {
   std::filesystem::path folder;  // of the file
   std::uint64_t seed = 1;
   std::vector<SyntheticSensor> sensors;
+  bool wheels = true;     // whether it says what the filter believes of them
   FusionOptions options;  // filter kind and smoother are the command's business
 };
 

@@ -94,7 +94,7 @@ std::map<std::string, std::vector<double>> identifiability_series(const Identifi
   // Columns of `directions` lie one after the other; the correlation is symmetric.
   return {{"singular_values", list(id.singular_values)},
           {"directions", list(id.directions)},
-          {"standard_deviations", list(id.standard_deviations)},
+          {"sd_if_samples_were_independent", list(id.standard_deviations)},
           {"correlation", list(id.correlation)},
           {"residual_deviation", {id.residual_deviation}}};
 }
@@ -134,7 +134,8 @@ std::string identifiability_note(const Problem& problem, const Identifiability& 
       "Barely determined ({}): the singular values of the scaled Jacobian span {:.3g} .. "
       "{:.2g}, and "
       "even if residuals were independent the relative standard deviation would exceed the half width of the "
-      "box for {}; the real one is several times larger. {}Trust the costs and errors more than these single "
+      "box for {}; the real one is several times larger: the box decides them. {}Trust the costs and errors "
+      "more than these single "
       "parameters.",
       what, id.singular_values[0], id.singular_values[n - 1], list,
       blind.empty()

@@ -12,7 +12,9 @@ namespace odobench {
 
 // With q = z / scale relative parameters (scale: |nominal|, or half the box where nominal is 0), J'J in q and
 // N residuals of n free parameters,
-//     sigma^2 = J / (N - n),   cov(q) = sigma^2 (J'J)^-1   (linear least-squares theory, bounds ignored).
+//     sigma^2 = J / (N - n),   cov(q) = sigma^2 (J'J)^-1   (linear least-squares theory, bounds ignored)
+// as if samples were independent, which those of a drive are not: nothing makes an interval of it.
+// problems/trust/ has intervals that hold.
 struct Identifiability {
   Vector singular_values;      // of the Jacobian in q, largest first (n)
   Vector standard_deviations;  // relative, of each parameter in the problem's order (n); infinite when

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "problems/inspection/hypotheses.hpp"
 #include "problems/inspection/set_checks.hpp"
 
@@ -131,12 +130,12 @@ void check_silent(const RobotView& robot, const Sums& sums, std::vector<Finding>
 
 }  // namespace
 
-std::vector<Finding> check_recordings_alike(const RobotView& robot, std::vector<Drive>& drives,
-                                            bool rotation_is_off, int threads) {
+std::vector<Finding> check_recordings_alike(const RobotView& robot, DriveSet& drives, bool rotation_is_off) {
   std::vector<Finding> found;
   std::vector<Sums> each(drives.size());
   Sums all(robot.wheels.size());
-  parallel_for(drives.size(), threads, [&](std::size_t i) { each[i] = update_sums(robot, drives[i]); });
+  drives.correct([&robot](Drive& d) { update_sums(robot, d); });
+  drives.visit_parallel([&](std::size_t i, const Drive& d) { each[i] = d.sums; });
   for (const Sums& one : each) all += one;
   check_silent(robot, all, found);
   const SlopeFit fit = slope_fit(robot, all);
@@ -162,13 +161,13 @@ std::vector<Finding> check_recordings_alike(const RobotView& robot, std::vector<
     found.push_back(finding_of(
         "recording_unlike",
         fmt::format("{}: wheels and reference disagree by {:.2g} % (median of the others {:.2g} %)",
-                    drives[i].id(), 100 * std::sqrt(misfits[i]), 100 * std::sqrt(std::max(0.0, usual))),
+                    drives.recording(i).id, 100 * std::sqrt(misfits[i]),
+                    100 * std::sqrt(std::max(0.0, usual))),
         {{"disagreement", std::sqrt(misfits[i])}, {"others", std::sqrt(std::max(0.0, usual))}}));
-    found.back().recording = drives[i].id();
+    found.back().recording = drives.recording(i).id;
   }
   std::vector<std::vector<Finding>> slips(drives.size());
-  parallel_for(drives.size(), threads,
-               [&](std::size_t i) { check_slip(robot, drives[i], fit.slope, slips[i]); });
+  drives.visit_parallel([&](std::size_t i, const Drive& d) { check_slip(robot, d, fit.slope, slips[i]); });
   for (const std::vector<Finding>& one : slips) found.insert(found.end(), one.begin(), one.end());
   return found;
 }

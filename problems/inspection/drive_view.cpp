@@ -153,7 +153,8 @@ void update_twist(const RobotView& robot, Drive& d) {
   const Index n = d.samples(), drives = d.motion.cols();
   Matrix signals(drives + d.angle.cols(), n - 1);
   signals.topRows(drives) = d.motion.transpose();
-  signals.bottomRows(d.angle.cols()) = d.angle.middleRows(d.increments ? 1 : 0, n - 1).transpose();
+  if (d.angle.cols() > 0)  // rows of a matrix without columns have no address
+    signals.bottomRows(d.angle.cols()) = d.angle.middleRows(d.increments ? 1 : 0, n - 1).transpose();
   Matrix steps(3, n - 1);
   if (robot.twist.is_linear())
     steps.noalias() = robot.twist.matrix(robot.twist.nominal()) * robot.twist.streams(signals);
@@ -208,7 +209,7 @@ Sums& Sums::operator+=(const Sums& other) {
   return *this;
 }
 
-Sums update_sums(const RobotView& robot, Drive& d) {
+void update_sums(const RobotView& robot, Drive& d) {
   const Index n = d.samples();
   Sums sums(robot.wheels.size());
   Matrix along(n, static_cast<Index>(robot.wheels.size())), squares = along;
@@ -248,7 +249,7 @@ Sums update_sums(const RobotView& robot, Drive& d) {
       sums.both[column] = sums.own[column] = one.squaredNorm();
     }
   }
-  return sums;
+  d.sums = std::move(sums);
 }
 
 SlopeFit slope_fit(const RobotView& robot, const Sums& sums) {

@@ -34,9 +34,19 @@ struct RobotView {
   bool mean = false;         // its twist is the published mean
   // Free parameters of this field, of any wheel: what they are off by is for the calibration to find.
   bool free(WheelField field) const;
+  Index steerings() const {  // columns of Drive::angle
+    return static_cast<Index>(twist.signals().size()) - twist.drive_count();
+  }
   const Robot* robot;
 };
 
+// Sums over the used samples, per wheel: u.m, m.m, u.u. Of a wheel that only steers the first two are the
+// part of u.u along its direction; of one that slides u is its part along a.
+struct Sums {
+  Vector both, own, all;
+  explicit Sums(std::size_t wheels = 0);
+  Sums& operator+=(const Sums& other);
+};
 struct Drive {
   const Recording* recording = nullptr;
   Vector t;         // s, from 0
@@ -57,6 +67,7 @@ struct Drive {
   Vector mean_u;     // mean |u_i|
   double level = 0;  // its 95th percentile
   std::vector<char> used;
+  Sums sums;  // of the used samples
 
   Index samples() const { return t.size(); }
   const std::string& id() const { return recording->id; }
@@ -85,15 +96,9 @@ WheelVelocity velocity_of(const RobotView& robot, const Drive& drive, std::size_
 // m_i along a / |a|: r s_i / |a|.
 Vector rolling_of(const RobotView& robot, const Drive& drive, std::size_t wheel);
 
-// Sums over the used samples, per wheel: u.m, m.m, u.u. Of a wheel that only steers the first two are the
-// part of u.u along its direction; of one that slides u is its part along a.
-struct Sums {
-  Vector both, own, all;
-  explicit Sums(std::size_t wheels = 0);
-  Sums& operator+=(const Sums& other);
-};
-// mean_u, level, used: mean |u_i| > 0.3 of its 95th percentile, without h samples at the ends and bad ones.
-Sums update_sums(const RobotView& robot, Drive& drive);
+// mean_u, level, sums, used: mean |u_i| > 0.3 of its 95th percentile, without h samples at the ends and bad
+// ones.
+void update_sums(const RobotView& robot, Drive& drive);
 
 // k_i = sum u.m / sum m.m; E = sum_i sum |u - k m|^2 / sum_i sum |u|^2; score = E + 0.05 sd|k_i| / mean|k_i|
 // + 0.02 (number of k_i < 0). k_i is not-a-number where a wheel never turns or only steers.

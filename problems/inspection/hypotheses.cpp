@@ -43,7 +43,7 @@ void refresh(const RobotView& robot, Drive& d) {
 }
 
 // Units and signs of whole columns: every candidate is tried on a copy.
-void try_units(const RobotView& robot, const std::vector<Drive>& drives, const SlopeFit& now,
+void try_units(const RobotView& robot, const DriveSet& drives, const SlopeFit& now,
                std::optional<Explanation>& best) {
   struct Unit {
     const char* kind;
@@ -63,13 +63,16 @@ void try_units(const RobotView& robot, const std::vector<Drive>& drives, const S
        [](Drive& d) { d.angle *= kDegree; }},
   };
   for (const Unit& unit : kUnits) {
-    if (std::string_view(unit.kind) == "steering_degrees" && drives.front().angle.cols() == 0) continue;
-    std::vector<Drive> tried = drives;
-    for (Drive& d : tried) {
-      unit.apply(d);
-      refresh(robot, d);
-    }
-    const SlopeFit fit = slope_fit(robot, sums_of(robot, tried));
+    if (std::string_view(unit.kind) == "steering_degrees" && robot.steerings() == 0) continue;
+    Sums sums(robot.wheels.size());
+    drives.visit([&](std::size_t, const Drive& drive) {
+      Drive tried = drive;
+      unit.apply(tried);
+      refresh(robot, tried);
+      update_sums(robot, tried);
+      sums += tried.sums;
+    });
+    const SlopeFit fit = slope_fit(robot, sums);
     std::map<std::string, double> figures = both_misfits(now, fit);
     figures["factor"] = unit.factor;
     keep_better(best, {fit, {finding_of(unit.kind, unit.text + change(now, fit), figures)}, unit.apply});
@@ -124,8 +127,8 @@ Finding order_finding(const RobotView& robot, const std::vector<std::size_t>& dr
                     figures);
 }
 
-void try_orders(const RobotView& robot, const std::vector<Drive>& drives, const Sums& sums,
-                const SlopeFit& now, std::optional<Explanation>& best) {
+void try_orders(const RobotView& robot, const DriveSet& drives, const Sums& sums, const SlopeFit& now,
+                std::optional<Explanation>& best) {
   const std::vector<std::size_t> driven = alike(robot);
   if (driven.empty()) return;
   const Matrix both = exchange_sums(robot, drives);
@@ -158,16 +161,18 @@ void try_orders(const RobotView& robot, const std::vector<Drive>& drives, const 
   keep_better(best, {lowest, {order_finding(robot, driven, least, now, lowest)}, correct});
 }
 
-void try_steering_signs(const RobotView& robot, const std::vector<Drive>& drives, const Sums& sums,
-                        const SlopeFit& now, std::optional<Explanation>& best) {
-  const Index steerings = drives.front().angle.cols();
+void try_steering_signs(const RobotView& robot, const DriveSet& drives, const Sums& sums, const SlopeFit& now,
+                        std::optional<Explanation>& best) {
+  const Index steerings = robot.steerings();
   if (steerings == 0 || steerings > 8) return;
-  std::vector<Drive> turned = drives;
-  for (Drive& d : turned) {
-    d.angle *= -1;
-    update_wheels(robot, d);
-  }
-  const Sums other = sums_of(robot, turned);
+  Sums other(robot.wheels.size());
+  drives.visit([&](std::size_t, const Drive& drive) {
+    Drive turned = drive;
+    turned.angle *= -1;
+    update_wheels(robot, turned);
+    update_sums(robot, turned);
+    other += turned.sums;
+  });
   for (unsigned set = 1; set < (1U << steerings); ++set) {
     Sums tried = sums;
     std::vector<std::size_t> wheels;
@@ -195,7 +200,7 @@ void try_steering_signs(const RobotView& robot, const std::vector<Drive>& drives
   }
 }
 
-void check_backwards(const RobotView& robot, std::vector<Drive>& drives, std::vector<Finding>& found) {
+void check_backwards(const RobotView& robot, DriveSet& drives, std::vector<Finding>& found) {
   const SlopeFit fit = slope_fit(robot, sums_of(robot, drives));
   std::vector<double> sizes;
   for (const double k : fit.slope)
@@ -208,8 +213,9 @@ void check_backwards(const RobotView& robot, std::vector<Drive>& drives, std::ve
   const bool all = wheels.size() == sizes.size();
   for (const std::size_t i : wheels) {
     const double k = fit.slope[static_cast<Index>(i)];
-    for (Drive& d : drives)
+    drives.correct([&robot, i](Drive& d) {
       for (const auto& [column, weight] : robot.wheels[i].drives) d.motion.col(column) *= -1;
+    });
     if (all) continue;
     found.push_back(
         finding_of("wheel_reversed",
@@ -229,16 +235,17 @@ void check_backwards(const RobotView& robot, std::vector<Drive>& drives, std::ve
 
 }  // namespace
 
-Sums sums_of(const RobotView& robot, std::vector<Drive>& drives) {
+Sums sums_of(const RobotView& robot, DriveSet& drives) {
   Sums sums(robot.wheels.size());
-  for (Drive& d : drives) sums += update_sums(robot, d);
+  drives.correct([&robot](Drive& d) { update_sums(robot, d); });
+  drives.visit([&](std::size_t, const Drive& d) { sums += d.sums; });
   return sums;
 }
 
-Matrix exchange_sums(const RobotView& robot, const std::vector<Drive>& drives) {
+Matrix exchange_sums(const RobotView& robot, const DriveSet& drives) {
   const auto count = static_cast<Index>(robot.wheels.size());
   Matrix both = Matrix::Zero(count, count);
-  for (const Drive& d : drives) {
+  drives.visit([&](std::size_t, const Drive& d) {
     Vector mask(d.samples());
     for (Index k = 0; k < d.samples(); ++k) mask[k] = d.used[static_cast<std::size_t>(k)];
     for (Index i = 0; i < count; ++i) {
@@ -254,11 +261,11 @@ Matrix exchange_sums(const RobotView& robot, const std::vector<Drive>& drives) {
                           .sum();
       }
     }
-  }
+  });
   return both;
 }
 
-std::vector<Finding> check_hypotheses(const RobotView& robot, std::vector<Drive>& drives) {
+std::vector<Finding> check_hypotheses(const RobotView& robot, DriveSet& drives) {
   std::vector<Finding> found;
   const Sums sums = sums_of(robot, drives);
   const SlopeFit now = slope_fit(robot, sums);
@@ -269,16 +276,15 @@ std::vector<Finding> check_hypotheses(const RobotView& robot, std::vector<Drive>
     try_steering_signs(robot, drives, sums, now, best);
     if (best && best->fit.misfit < kExplains * now.misfit) {
       found = best->findings;
-      for (Drive& d : drives) {
-        best->correct(d);
+      drives.correct([&robot, correct = best->correct](Drive& d) {
+        correct(d);
         refresh(robot, d);
-      }
+      });
     }
   }
   const std::size_t before = found.size();
   check_backwards(robot, drives, found);
-  if (found.size() > before)
-    for (Drive& d : drives) update_wheels(robot, d);
+  if (found.size() > before) drives.correct([&robot](Drive& d) { update_wheels(robot, d); });
   return found;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "problems/inspection/hypotheses.hpp"
 #include "problems/inspection/recording_checks.hpp"
 #include "problems/inspection/set_checks.hpp"
@@ -28,16 +27,18 @@ double range_of(const std::vector<double>& v) {
 }
 
 // The robot stands in all recordings, as far as there are two poses to say so.
-void check_moved(const RobotView& robot, const std::vector<Drive>& drives, std::vector<Finding>& found) {
+void check_moved(const RobotView& robot, const DriveSet& drives, std::vector<Finding>& found) {
   double largest = 0, path = 0;
-  for (const Drive& d : drives) {
-    const Reference& reference = d.recording->reference;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const Reference& reference = drives.recording(i).reference;
     if (reference.x.size() < 2) return;
     largest = std::max(
         {largest, range_of(reference.x), range_of(reference.y), robot.distance * range_of(reference.theta)});
     if (largest >= kMoved) return;
-    for (Index k = 0; k < d.motion.rows(); ++k) path += wheel_path(robot, d, k);
   }
+  drives.visit([&](std::size_t, const Drive& d) {
+    for (Index k = 0; k < d.motion.rows(); ++k) path += wheel_path(robot, d, k);
+  });
   found = {finding_of("never_moved",
                       fmt::format("the reference never moves{}: nothing can be calibrated",
                                   path > kTurned ? " though the wheels turn" : ", nor do the wheels"),
@@ -69,47 +70,50 @@ bool has(const std::vector<Finding>& found, std::string_view kind) {
 
 }  // namespace
 
-std::vector<Finding> inspect(const Robot& own, std::span<const Recording> recordings, int threads) {
+std::vector<Finding> inspect(const Robot& own, std::span<const Recording> recordings, int threads,
+                             std::size_t kept_samples) {
   const RobotView robot(own);
-  std::vector<Drive> drives(recordings.size());
   std::vector<std::vector<Finding>> each(recordings.size());
-  parallel_for(recordings.size(), threads, [&](std::size_t i) {
-    drives[i] = drive_view(robot, recordings[i]);
-    each[i] = check_recording(robot, drives[i]);
-    if (!drives[i].dense) return;
-    update_reference(drives[i]);
-    update_wheels(robot, drives[i]);
-  });
+  std::vector<char> dense(recordings.size(), 0), sparse(recordings.size(), 0);
+  DriveSet drives(
+      robot, recordings,
+      [&](std::size_t i, Drive& d) {
+        std::vector<Finding> one = check_recording(robot, d);
+        if (dense[i] == 0 && sparse[i] == 0) {
+          each[i] = std::move(one);
+          (d.dense ? dense : sparse)[i] = 1;
+        }
+        if (!d.dense) return;
+        update_reference(d);
+        update_wheels(robot, d);
+      },
+      threads, kept_samples);
+  if (!drives.keeps()) drives.visit_parallel([](std::size_t, const Drive&) {});  // findings of each
   std::vector<Finding> found;
   for (const std::vector<Finding>& one : each) append(found, one);
   check_moved(robot, drives, found);
   if (has(found, "never_moved")) return found;
   check_layout(robot, found);
-  std::vector<Drive> dense;
-  for (Drive& d : drives)
-    if (d.dense) dense.push_back(std::move(d));
-  if (dense.size() < drives.size()) {
-    std::vector<Drive> rest;
-    for (const Recording& r : recordings) {
-      const bool sparse =
-          std::none_of(dense.begin(), dense.end(), [&](const Drive& d) { return d.recording == &r; });
-      if (sparse) rest.push_back(drive_view(robot, r));
-    }
+  if (std::count(sparse.begin(), sparse.end(), 1) > 0) {
+    DriveSet rest(
+        robot, recordings, [](std::size_t, Drive&) {}, threads, kept_samples);
+    rest.only(sparse);
     append(found, check_starts(robot, rest));
+    drives.only(dense);
   }
-  if (dense.empty()) return found;
+  if (drives.size() == 0) return found;
   const std::size_t of_recordings = found.size();
-  append(found, check_hypotheses(robot, dense));
-  parallel_for(dense.size(), threads, [&](std::size_t i) {
-    update_twist(robot, dense[i]);
-    update_sums(robot, dense[i]);
+  append(found, check_hypotheses(robot, drives));
+  drives.correct([&robot](Drive& d) {
+    update_twist(robot, d);
+    update_sums(robot, d);
   });
-  append(found, check_factors(robot, dense));
-  append(found, check_starts(robot, dense));
+  append(found, check_factors(robot, drives));
+  append(found, check_starts(robot, drives));
   const bool rotation = has(found, "rotation_factor");
-  append(found, check_lag(robot, dense, threads));
-  append(found, check_frames(robot, dense));
-  append(found, check_recordings_alike(robot, dense, rotation, threads));
+  append(found, check_lag(robot, drives));
+  append(found, check_frames(robot, drives));
+  append(found, check_recordings_alike(robot, drives, rotation));
   // Where nothing fits, what was seen on the way is no explanation.
   if (has(found, "not_together"))
     found.erase(found.begin() + static_cast<std::ptrdiff_t>(of_recordings), found.end() - 1);

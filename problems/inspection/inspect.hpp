@@ -12,6 +12,7 @@
 
 #include "datasets/recording.hpp"
 #include "datasets/robots/robot.hpp"
+#include "problems/inspection/drive_set.hpp"
 #include "problems/inspection/finding.hpp"
 
 namespace odobench::inspection {
@@ -20,6 +21,8 @@ namespace odobench::inspection {
 // single recordings (0: one per core); the findings do not depend on it. What needs the reference at every
 // stamp is not asked of recordings that lack it. O(samples). Throws std::invalid_argument for a robot that
 // WheeledRobot refuses and a signal that a recording lacks, DataError where the wheels do not tell the twist.
-std::vector<Finding> inspect(const Robot& robot, std::span<const Recording> recordings, int threads = 1);
+// `kept_samples`: larger sets are looked at recording by recording; findings do not depend on it.
+std::vector<Finding> inspect(const Robot& robot, std::span<const Recording> recordings, int threads = 1,
+                             std::size_t kept_samples = kKeptSamples);
 
 }  // namespace odobench::inspection

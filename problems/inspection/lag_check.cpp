@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "problems/inspection/set_checks.hpp"
 
 namespace odobench::inspection {
@@ -48,7 +47,7 @@ struct SetLag {
   std::string lowest, highest;
 };
 
-SetLag set_lag(const std::vector<Lag>& lags, const std::vector<const Drive*>& of) {
+SetLag set_lag(const std::vector<Lag>& lags, const std::vector<std::string>& of) {
   SetLag set;
   double weights = 0;
   std::vector<double> values, sure;
@@ -63,8 +62,8 @@ SetLag set_lag(const std::vector<Lag>& lags, const std::vector<const Drive*>& of
     if (std::abs(lag.seconds) > kReported && std::abs(lag.seconds) > kSure * lag.deviation) ++set.late;
     if (!(lag.deviation < 0.01)) continue;
     sure.push_back(lag.deviation);
-    if (lag.seconds < set.low) set.lowest = of[i]->id();
-    if (lag.seconds > set.high) set.highest = of[i]->id();
+    if (lag.seconds < set.low) set.lowest = of[i];
+    if (lag.seconds > set.high) set.highest = of[i];
     set.low = std::min(set.low, lag.seconds);
     set.high = std::max(set.high, lag.seconds);
   }
@@ -92,15 +91,15 @@ Vector shifted(const Vector& t, const Vector& v, double lag) {
   return out;
 }
 
-std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drives, int threads) {
+std::vector<Finding> check_lag(const RobotView& robot, DriveSet& drives) {
   std::vector<Lag> each(drives.size());
-  parallel_for(drives.size(), threads, [&](std::size_t i) { each[i] = drive_lag(robot, drives[i]); });
+  drives.visit_parallel([&](std::size_t i, const Drive& d) { each[i] = drive_lag(robot, d); });
   std::vector<Lag> lags;
-  std::vector<const Drive*> of;
+  std::vector<std::string> of;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     if (!each[i].usable) continue;
     lags.push_back(each[i]);
-    of.push_back(&drives[i]);
+    of.push_back(drives.recording(i).id);
   }
   if (lags.empty()) return {};
   const SetLag set = set_lag(lags, of);
@@ -119,9 +118,8 @@ std::vector<Finding> check_lag(const RobotView& robot, std::vector<Drive>& drive
     f.figures["highest"] = set.high;
     f.mendable = false;
   }
-  parallel_for(drives.size(), threads, [&](std::size_t i) {
-    Drive& d = drives[i];
-    for (Vector* v : {&d.x, &d.y, &d.theta}) *v = shifted(d.t, *v, set.mean);
+  drives.correct([lag = set.mean](Drive& d) {
+    for (Vector* v : {&d.x, &d.y, &d.theta}) *v = shifted(d.t, *v, lag);
     update_reference(d);
   });
   return {f};

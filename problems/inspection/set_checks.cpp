@@ -39,9 +39,9 @@ struct TwistSums {
   Index straight = 0, turning = 0;
 };
 
-TwistSums twist_sums(const RobotView& robot, const std::vector<Drive>& drives) {
+TwistSums twist_sums(const RobotView& robot, const DriveSet& drives) {
   TwistSums sums;
-  for (const Drive& d : drives)
+  drives.visit([&](std::size_t, const Drive& d) {
     for (Index k = 0; k < d.samples(); ++k) {
       const Motion motion = motion_of(robot, d, k);
       if (d.used[static_cast<std::size_t>(k)] != 0) {
@@ -61,6 +61,7 @@ TwistSums twist_sums(const RobotView& robot, const std::vector<Drive>& drives) {
         ++sums.turning;
       }
     }
+  });
   return sums;
 }
 
@@ -104,8 +105,8 @@ Finding factor_finding(double kv, bool stamps) {
   return f;
 }
 
-void correct_factor(const RobotView& robot, std::vector<Drive>& drives, double kv, bool stamps) {
-  for (Drive& d : drives) {
+void correct_factor(const RobotView& robot, DriveSet& drives, double kv, bool stamps) {
+  drives.correct([&robot, kv, stamps](Drive& d) {
     if (stamps) {
       d.t *= 1000;
       if (!d.increments) d.motion *= 1000;
@@ -116,8 +117,8 @@ void correct_factor(const RobotView& robot, std::vector<Drive>& drives, double k
     }
     update_wheels(robot, d);
     update_twist(robot, d);
-  }
-  for (Drive& d : drives) update_sums(robot, d);
+    update_sums(robot, d);
+  });
 }
 
 // 1000 or 100 where turns fit and distances are as many times too long, else 1: lines may outweigh turns so
@@ -140,13 +141,13 @@ Finding position_finding(double unit, double kv) {
       {{"factor", unit}});
 }
 
-void correct_positions(const RobotView& robot, std::vector<Drive>& drives, double unit) {
-  for (Drive& d : drives) {
+void correct_positions(const RobotView& robot, DriveSet& drives, double unit) {
+  drives.correct([&robot, unit](Drive& d) {
     d.x /= unit;
     d.y /= unit;
     update_reference(d);
     update_sums(robot, d);
-  }
+  });
 }
 
 // Parameters that may be as far off as this do not make a finding.
@@ -160,15 +161,16 @@ bool box_allows_rotation(const RobotView& robot) {
 
 // Half the angle of each wheel's direction against its velocity where it drives straight, median over the
 // recordings. Not-a-number for wheels that slide or say nothing.
-Vector direction_angles(const RobotView& robot, const std::vector<Drive>& drives) {
+Vector direction_angles(const RobotView& robot, const DriveSet& drives) {
   const auto count = static_cast<Index>(robot.wheels.size());
   Vector angles = Vector::Constant(count, std::nan(""));
-  for (Index i = 0; i < count; ++i) {
-    const WheelView& wheel = robot.wheels[static_cast<std::size_t>(i)];
-    if (!wheel.states() || wheel.nominal.slides) continue;
-    std::vector<double> each;
-    for (const Drive& d : drives) {
-      const WheelVelocity u = velocity_of(robot, d, static_cast<std::size_t>(i));
+  std::vector<std::vector<double>> each(robot.wheels.size());
+  drives.visit([&](std::size_t, const Drive& d) {
+    for (Index i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const WheelView& wheel = robot.wheels[at];
+      if (!wheel.states() || wheel.nominal.slides) continue;
+      const WheelVelocity u = velocity_of(robot, d, at);
       Complex sum = 0;
       Index samples = 0;
       for (Index k = 0; k < d.samples(); ++k) {
@@ -177,10 +179,11 @@ Vector direction_angles(const RobotView& robot, const std::vector<Drive>& drives
         sum += own * own;
         ++samples;
       }
-      if (samples >= kFewestSamples) each.push_back(0.5 * std::arg(sum));
+      if (samples >= kFewestSamples) each[at].push_back(0.5 * std::arg(sum));
     }
-    if (!each.empty()) angles[i] = median(each);
-  }
+  });
+  for (Index i = 0; i < count; ++i)
+    if (const auto at = static_cast<std::size_t>(i); !each[at].empty()) angles[i] = median(each[at]);
   return angles;
 }
 
@@ -208,11 +211,11 @@ std::string in_degrees(const Vector& angles, double factor) {
   return fmt::format("{}", fmt::join(text, ", "));
 }
 
-void turn_heading(std::vector<Drive>& drives, double beta) {
-  for (Drive& d : drives) {
+void turn_heading(DriveSet& drives, double beta) {
+  drives.correct([beta](Drive& d) {
     d.theta.array() += beta;
     update_reference(d);
-  }
+  });
 }
 
 Finding turned_finding(const RobotView& robot, double beta) {
@@ -246,8 +249,8 @@ Finding zero_finding(const RobotView& robot, const Vector& angles, double beta) 
   return f;
 }
 
-void correct_zeros(const RobotView& robot, std::vector<Drive>& drives, const Vector& angles) {
-  for (Drive& d : drives) {
+void correct_zeros(const RobotView& robot, DriveSet& drives, const Vector& angles) {
+  drives.correct([&robot, angles](Drive& d) {
     for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
       const WheelView& wheel = robot.wheels[i];
       const double a = angles[static_cast<Index>(i)];
@@ -256,13 +259,13 @@ void correct_zeros(const RobotView& robot, std::vector<Drive>& drives, const Vec
     }
     update_wheels(robot, d);
     update_twist(robot, d);
-  }
+  });
 }
 
-void check_tracked_point(const RobotView& robot, std::vector<Drive>& drives, std::vector<Finding>& found) {
+void check_tracked_point(const RobotView& robot, DriveSet& drives, std::vector<Finding>& found) {
   double wx = 0, wy = 0, ww = 0, before = 0;
   Index samples = 0;
-  for (const Drive& d : drives)
+  drives.visit([&](std::size_t, const Drive& d) {
     for (Index k = 0; k < d.samples(); ++k) {
       if (motion_of(robot, d, k) != Motion::Turning) continue;
       const double ex = d.fx[k] - d.twist(k, 0), ey = d.fy[k] - d.twist(k, 1);
@@ -272,6 +275,7 @@ void check_tracked_point(const RobotView& robot, std::vector<Drive>& drives, std
       before += ex * ex + ey * ey;
       ++samples;
     }
+  });
   if (samples < kFewestSamples || !(ww > 0)) return;
   const double x = wx / ww, y = wy / ww, removed = (wx * wx + wy * wy) / ww;
   if (!(std::hypot(x, y) > kLever) || !(removed > 0.5 * before)) return;
@@ -287,25 +291,25 @@ void check_tracked_point(const RobotView& robot, std::vector<Drive>& drives, std
         allowed = std::max(allowed, std::min(p.parameter.upper - p.parameter.nominal,
                                              p.parameter.nominal - p.parameter.lower));
   if (std::hypot(x, y) < allowed) found.back().severity = Severity::Note;
-  for (Drive& d : drives) {
+  drives.correct([x, y](Drive& d) {
     d.fx += y * d.w;
     d.fy -= x * d.w;
-  }
+  });
 }
 
 }  // namespace
 
-std::vector<Finding> check_starts(const RobotView& robot, const std::vector<Drive>& drives) {
+std::vector<Finding> check_starts(const RobotView& robot, const DriveSet& drives) {
   if (!robot.from_origin) return {};
   double far = 0;
   std::size_t count = 0;
-  for (const Drive& d : drives) {
+  drives.visit([&](std::size_t, const Drive& d) {
     const Reference& reference = d.recording->reference;
-    if (!d.dense && (reference.sample.empty() || reference.sample.front() != 0)) continue;
+    if (!d.dense && (reference.sample.empty() || reference.sample.front() != 0)) return;
     const double distance = d.dense ? std::hypot(d.x[0], d.y[0]) : std::hypot(reference.x[0], reference.y[0]);
     far = std::max(far, distance);
     if (distance > kStart) ++count;
-  }
+  });
   if (count == 0) return {};
   return {
       finding_of("start_offset",
@@ -315,7 +319,7 @@ std::vector<Finding> check_starts(const RobotView& robot, const std::vector<Driv
                  {{"largest", far}, {"drives", static_cast<double>(count)}})};
 }
 
-std::vector<Finding> check_factors(const RobotView& robot, std::vector<Drive>& drives) {
+std::vector<Finding> check_factors(const RobotView& robot, DriveSet& drives) {
   std::vector<Finding> found;
   const TwistSums sums = twist_sums(robot, drives);
   const bool straight = sums.straight >= kFewestSamples && sums.wheels > 0;
@@ -330,7 +334,7 @@ std::vector<Finding> check_factors(const RobotView& robot, std::vector<Drive>& d
     return found;
   }
   if (std::abs(std::log(kv)) > std::log(kFactor)) {
-    const bool stamps = drives.front().step < 0.002 && std::abs(std::log(kv / 1000)) < kNamed;
+    const bool stamps = drives.first_step() < 0.002 && std::abs(std::log(kv / 1000)) < kNamed;
     found.push_back(factor_finding(kv, stamps));
     correct_factor(robot, drives, kv, stamps);
   }
@@ -345,7 +349,7 @@ std::vector<Finding> check_factors(const RobotView& robot, std::vector<Drive>& d
   return found;
 }
 
-std::vector<Finding> check_frames(const RobotView& robot, std::vector<Drive>& drives) {
+std::vector<Finding> check_frames(const RobotView& robot, DriveSet& drives) {
   std::vector<Finding> found;
   const Vector angles = direction_angles(robot, drives);
   if (angles.array().isFinite().any()) {

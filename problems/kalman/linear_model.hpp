@@ -13,7 +13,7 @@
 namespace odobench {
 
 // x' = F x + Psi u + w. The period is in F and Psi; dt is not looked at.
-struct LinearModel {
+struct LinearSystemModel {
   static constexpr int kStates = Eigen::Dynamic, kNoises = Eigen::Dynamic;
   using Input = Vector;
   Matrix f, psi;
@@ -55,6 +55,6 @@ struct LinearSensor {
   }
 };
 
-using LinearKalmanFilter = KalmanFilter<LinearModel>;
+using LinearKalmanFilter = KalmanFilter<LinearSystemModel>;
 
 }  // namespace odobench

@@ -11,6 +11,7 @@
 #include "reports/kinds/entropy/entropy_kinds.hpp"
 #include "reports/kinds/fusion/fusion_kinds.hpp"
 #include "reports/kinds/planning/planning_kind.hpp"
+#include "reports/kinds/trust/models_tables.hpp"
 #include "reports/kinds/verification/verification_kind.hpp"
 
 namespace odobench {
@@ -18,7 +19,7 @@ namespace odobench {
 const std::vector<RecordKind>& record_kinds() {
   static const std::vector<RecordKind> kinds{calibration_kind(), verification_kind(), tuning_kind(),
                                              filter_kind(),      windows_kind(),      fusion_kind(),
-                                             planning_kind()};
+                                             planning_kind(),    models_kind()};
   return kinds;
 }
 

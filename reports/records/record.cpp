@@ -157,6 +157,14 @@ void read_measures(const JsonNode& node, Measures& measures) {
   }
 }
 
+// Of a calibration; a plan has standard deviations that are some.
+void rename_old_series(RunRecord& r) {
+  const auto old = r.series.find("standard_deviations");
+  if (old == r.series.end() || r.series.count("residual_deviation") == 0) return;
+  r.series.emplace("sd_if_samples_were_independent", std::move(old->second));
+  r.series.erase(old);
+}
+
 void read_outcome(const JsonNode& node, RunRecord& r) {
   r.termination = node.at("termination").text();
   r.message = node.at("message").text();
@@ -179,6 +187,8 @@ void read_outcome(const JsonNode& node, RunRecord& r) {
   read_measures(node, r.measures);
   if (const auto series = node.find("series"))
     for (const std::string& key : series->keys()) r.series[key] = series->at(key).stored_numbers();
+  rename_old_series(r);
+  if (const auto trust = node.find("trust")) r.trust = trust_from(*trust);
   r.context = context_from(node.at("context"));
   r.time_utc = node.at("time_utc").text();
 }
@@ -222,6 +232,7 @@ json to_json(const RunRecord& r) {
   if (r.check) out["check"] = to_json(*r.check);
   if (!r.group.empty()) out["group"] = r.group;
   for (const auto& [key, value] : r.budget) out["budget"][key] = finite_or_null(value);
+  if (r.trust) out["trust"] = to_json(*r.trust);
   if (!r.measures.empty()) out["measures"] = to_json(r.measures);
   for (const auto& [key, values] : r.series) {
     json list = json::array();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reports/records/measure.hpp"
+#include "reports/records/trust_record.hpp"
 
 namespace odobench {
 
@@ -114,6 +115,8 @@ struct RunRecord {
   // and reports/kinds/fusion/fusion_tables.hpp. What is not finite is stored as null and read as
   // not-a-number.
   std::map<std::string, std::vector<double>> series;
+  // How far a calibration can be trusted; absent in records of earlier versions and of other problems.
+  std::optional<TrustRecord> trust;
   std::vector<std::string> notes;  // remarks on this result, e.g. which parameters are barely determined
   RunContext context;
   std::string time_utc;  // ISO 8601 start of the run
@@ -123,11 +126,13 @@ struct RunRecord {
 // relative to |nominal| (half the box where nominal is 0):
 //   singular_values      of the Jacobian, largest first (n)
 //   directions           unit right singular vectors in the same order, one after the other (n * n)
-//   standard_deviations  sqrt(J / (N - n) diag((J'J)^-1)) (n), null where the data say nothing
+//   sd_if_samples_were_independent  sqrt(J / (N - n) diag((J'J)^-1)) (n), null where the data say nothing;
+//                        samples are not independent: several times too small, no interval is made of it.
+//                        `standard_deviations` in records of earlier versions, read by the new name
 //   correlation          of the parameters, row by row (n * n)
 //   residual_deviation   sqrt(J / (N - n)) (1)
 inline constexpr std::array<const char*, 5> kIdentifiabilitySeries{
-    "singular_values", "directions", "standard_deviations", "correlation", "residual_deviation"};
+    "singular_values", "directions", "sd_if_samples_were_independent", "correlation", "residual_deviation"};
 
 // Doubles keep every bit, except that JSON has no word for what is not finite: it is written as null and read
 // as not-a-number (an optional cost: as absent).

@@ -161,7 +161,20 @@ std::string rule(int width) {
   return line + "\n";
 }
 
+// "- sentence", further lines below the first word.
+void append_sentences(std::string& out, const Table& table, int limit) {
+  for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
+  for (const std::string& sentence : sentences_of(table)) {
+    const char* begin = "- ";
+    for (const std::string& line : wrap_text(one_line(sentence), std::max(limit - 2, 10))) {
+      append_line(out, begin + line);
+      begin = "  ";
+    }
+  }
+}
+
 void append_table(std::string& out, const Table& table, int limit, bool bold, bool explain) {
+  if (!table.sentences.empty()) return append_sentences(out, table, limit);
   for (const std::string& line : wrap_text(one_line(table.title), limit)) append_line(out, line);
   std::vector<std::vector<ConsoleColumn>> blocks = split(table, limit, bold);
   std::vector<int> widths;

@@ -48,7 +48,12 @@ std::string render_markdown(const std::vector<Table>& tables) {
   std::string out;
   for (const Table& table : tables) {
     if (!out.empty()) out += "\n";
-    out += fmt::format("### {}\n\n|", escaped(table.title));
+    out += fmt::format("### {}\n\n", escaped(table.title));
+    if (!table.sentences.empty()) {
+      for (const std::string& sentence : sentences_of(table)) out += markdown_note(sentence);
+      continue;
+    }
+    out += "|";
     for (const Column& column : table.columns) out += fmt::format(" {} |", escaped(heading(column)));
     out += "\n|";
     for (const Column& column : table.columns) out += column.align == Align::Right ? " ---: |" : " :--- |";

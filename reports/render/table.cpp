@@ -219,4 +219,14 @@ std::string render(const std::vector<Table>& given, Format format, const RenderO
   throw std::invalid_argument("not a table format");
 }
 
+std::vector<std::string> sentences_of(const Table& table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].id != table.sentences) continue;
+    std::vector<std::string> list;
+    for (const std::vector<Cell>& row : table.rows) list.push_back(row.at(c).text);
+    return list;
+  }
+  throw std::invalid_argument(fmt::format("table '{}' has no column '{}'", table.id, table.sentences));
+}
+
 }  // namespace odobench

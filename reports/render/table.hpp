@@ -66,6 +66,8 @@ struct Table {
   std::vector<std::vector<Cell>> rows;  // every row has columns.size() cells
   std::vector<std::string> notes;
   std::vector<std::size_t> references = {};  // rows that do not compete for the best value: nominal, a bound
+  // Id of a column of sentences: console and md show these, one below the other, and no table; "": a table.
+  std::string sentences = {};
 };
 
 // Numbers that repeat, relative: what compilers and processors change about them.
@@ -123,6 +125,9 @@ std::string render_latex(const std::vector<Table>& tables);
 // RFC 4180: quotes around a field with separators, quotes, line breaks or outer blanks; quotes inside
 // doubled.
 std::string csv_field(const std::string& text);
+
+// The cells of the column Table::sentences. Throws std::invalid_argument when there is no such column.
+std::vector<std::string> sentences_of(const Table& table);
 
 // A line of a list, "- text", with what Markdown would interpret escaped.
 std::string markdown_note(const std::string& note);

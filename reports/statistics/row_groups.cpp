@@ -66,9 +66,23 @@ void add(Comparison& comparison, const RunRecord& record) {
   comparison.rows.back().runs.push_back(&record);
 }
 
+// " (cauchy=2.385,scale=0.0036:0.0133)" where a problem's name has a robust loss: its J is no sum of squares.
+std::string loss_suffix(const std::string& problem) {
+  for (const char* loss : {"huber=", "cauchy=", "tukey="}) {
+    const std::size_t at = problem.find(loss);
+    if (at == std::string::npos || at == 0 || (problem[at - 1] != ',' && problem[at - 1] != '[')) continue;
+    std::size_t end = problem.find("scale=", at);
+    if (end == std::string::npos) end = at;
+    end = problem.find_first_of(",]", end);
+    return fmt::format(" ({})", problem.substr(at, end - at));
+  }
+  return "";
+}
+
 // Tells several groups apart; the check sum only where the names do not: of the data, or of the box where
 // those are the same.
 void name_groups(std::vector<Comparison>& groups, const std::vector<std::string>& check_sums) {
+  if (groups.size() == 1) groups.front().title_suffix = loss_suffix(groups.front().problem);
   if (groups.size() < 2) return;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     Comparison& group = groups[i];

@@ -287,9 +287,7 @@ TEST(CliErrors, AKilledProcessLosesNoCompletedRun) {
 
 // A fault of the program is not called wrong data.
 TEST(CliErrors, TooLittleMemoryIsAnInternalFault) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers reserve more address space than any limit";
-#endif
+  if (testing::bench_is_sanitized()) GTEST_SKIP() << "sanitizers reserve more address space than any limit";
   const TemporaryFolder folder;
   std::string text = "{\"a\": [";
   for (int i = 0; i < 3000000; ++i) text += "[1],";
@@ -307,9 +305,7 @@ TEST(CliErrors, TooLittleMemoryIsAnInternalFault) {
 }
 
 TEST(CliErrors, ACrashSaysWhatToDoAndKeepsItsSignal) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers have handlers of their own";
-#endif
+  if (testing::bench_is_sanitized()) GTEST_SKIP() << "sanitizers have handlers of their own";
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE}) {
     const TemporaryFolder folder;
     Process bench(long_run(folder / "out"));

@@ -46,7 +46,7 @@ ParameterFile result_of(const std::string& kinematics) {
     nominal.push_back(p.nominal);
     values.push_back(p.nominal + share * (p.upper - p.nominal));
     FoundParameter found{{p.name, p.unit, values.back(), p.nominal, p.lower, p.upper, ""}, 1.25e-5};
-    if (p.lower == p.upper) found.deviation.reset();
+    if (p.lower == p.upper) found.half_width.reset();
     file.parameters.push_back(found);
   }
   file.wheels = wheels_with(robot.table, values);
@@ -263,7 +263,8 @@ TEST_F(CliExport, ARunKeepsTheBestRunOfEachLabelForEvaluateAndExport) {
     if (r.label == kept.label) best = std::min(best, *r.cost);
   EXPECT_EQ(kept.cost, best);
   EXPECT_EQ(kept.robot, "differential");
-  EXPECT_TRUE(kept.parameters[0].deviation.has_value());
+  EXPECT_TRUE(kept.parameters[0].sd_if_samples_were_independent.has_value());
+  EXPECT_TRUE(kept.parameters[0].half_width.has_value() != !kept.parameters[0].decided_by.empty());
   const ProcessResult both = run_bench(
       {"evaluate", "--data=" + set, "--json", "--parameters=" + out + "/parameters/lm.json," + out + ":lm"});
   ASSERT_EQ(both.exit_code, 0) << both.err;

@@ -213,9 +213,7 @@ long peak_memory(const std::vector<std::string>& words) {
 }
 
 TEST(CliFilter, MemoryDoesNotGrowWithTheRun) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer keeps freed memory";
-#endif
+  if (testing::bench_is_sanitized()) GTEST_SKIP() << "the sanitizer keeps freed memory";
   const TemporaryFolder folder;
   const std::string data = (folder / "run.csv").string();
   const auto peak = [&](int rows) {

@@ -1,11 +1,14 @@
-// `bench filter --data=-`: a stream that is interrupted.
+// `bench filter --data=-`: a stream that is interrupted. And the comparison with a Kalman filter.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -16,14 +19,18 @@
 namespace odobench {
 namespace {
 
+using testing::CircleRun;
 using testing::content;
 using testing::everything_in;
+using testing::expect_refusal;
 using ::testing::HasSubstr;
 using testing::kInterrupted;
+using testing::kUsage;
 using testing::lines;
 using testing::plain_run;
 using testing::Process;
 using testing::ProcessResult;
+using testing::run_bench;
 using testing::TemporaryFolder;
 
 using Row = std::vector<std::string>;
@@ -83,6 +90,38 @@ TEST(CliFilterStream, CtrlCBeforeTheFirstWindow) {
   process.send(SIGTERM);
   EXPECT_EQ(process.wait().exit_code, kInterrupted);
   EXPECT_EQ(everything_in(folder.path()), std::vector<std::string>{"fifo"});
+}
+
+// Constant motion without noise: the linear smoother knows it exactly, as the filter does.
+TEST(FilterComparison, ALinearFilterAndSmootherStandInTheSameTable) {
+  const TemporaryFolder folder;
+  CircleRun run;
+  const std::vector<std::string> words{"filter", "--data=" + folder.file("run.csv", run.data()),
+                                       fmt::format("--wheel-distance={}", run.wheel_distance()), "--quiet",
+                                       "--format=json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return run_bench(more);
+  };
+  const std::string truth = "--truth=" + folder.file("truth.csv", run.truth());
+  const ProcessResult result = with({truth, "--compare=kalman"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json tables = nlohmann::json::parse(result.out).at("tables");
+  const nlohmann::json& noise = tables.at(0).at("rows");
+  ASSERT_EQ(noise.size(), 14u);  // no ratios of accelerations that are 0, and the time
+  for (std::size_t row = 0; row < 13; ++row) {
+    if (!noise[row].contains("kalman") || noise[row]["kalman"].is_null()) continue;
+    EXPECT_LT(noise[row].at("kalman").get<double>(), 1e-12) << row;
+    EXPECT_LT(noise[row].at("smoother").get<double>(), 1e-12) << row;
+  }
+  EXPECT_GT(noise[13].at("smoother").get<double>(), noise[13].at("kalman").get<double>());
+  EXPECT_EQ(tables.at(1).at("rows").size(), 5u);
+  // Nothing else changes: the same tables without it have neither columns nor rows of it.
+  const nlohmann::json plain = nlohmann::json::parse(with({truth}).out).at("tables");
+  EXPECT_EQ(plain.at(0).at("rows").size(), 13u);
+  EXPECT_FALSE(plain.at(0).at("rows").at(0).contains("kalman"));
+  expect_refusal({"filter", words[1], "--compare=kalman"}, kUsage, {"give --truth, too"});
+  expect_refusal({"filter", words[1], truth, "--compare=ekf"}, kUsage, {"expected kalman"});
 }
 
 }  // namespace

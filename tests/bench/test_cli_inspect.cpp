@@ -182,7 +182,7 @@ TEST(CliInspect, ABadFitIsSaidToBeOne) {
   for (std::size_t k = 20; k < reference.x.size(); ++k) reference.y[k] += k % 2 == 0 ? 0.3 : -0.3;
   save_dataset(d, folder / "set.json");
   const std::string data = "--data=" + (folder / "set.json").string();
-  const ProcessResult result = run_bench({"--solver=lm", data, "--json"});
+  const ProcessResult result = run_bench({"--solver=lm", data, "--screen=off", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(table(result, "parameters").at("notes").dump(),
               HasSubstr("the drive " + d.recordings[0].id + " makes "));

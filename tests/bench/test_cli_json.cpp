@@ -65,6 +65,7 @@ class CliJson : public ::testing::Test {
                       sensors = "--sensors=" + source("datasets/sensors/heading_only.json");
     EXPECT_EQ(run_bench({"--solver=lm", "--quiet", "--out=" + runs}).exit_code, 0);
     EXPECT_EQ(run_bench({"check", runs, "--baseline=" + path("base.json"), "--update"}).exit_code, 0);
+    EXPECT_EQ(run_bench({"store", "import", path("stored.db"), runs}).exit_code, 0);
     return {
         {"run", {"run", "--problem=rosenbrock", "--solver=lm", "--quiet"}},
         {"calibrate",
@@ -73,6 +74,9 @@ class CliJson : public ::testing::Test {
         {"filter", {"filter", "--data=" + folder_.file("f.csv", filter_rows())}},
         {"evaluate", {"evaluate"}},
         {"inspect", {"inspect"}},
+        {"campaign", {"campaign", source("campaigns/smoke.json"), "--out=" + path("campaign.db"), "--quiet"}},
+        {"store", {"store", "info", path("stored.db")}},
+        {"models", {"models", "--models=plain,least_squares", "--quiet"}},
         {"list", {"list", "problems"}},
         {"report", {"report", runs}},
         {"export", {"export", runs, "--tum", "--out=" + path("tum")}},

@@ -111,6 +111,43 @@ TEST_F(CliLogs, ProposesSignsSidesAndWhatIsOpen) {
   expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
 }
 
+// A camera's odometry as a file: its heading walks by 0.03 rad in a metre, it sits 11 cm before the axle and
+// has a clock of its own. Over 1.8 m that hides the ratio of the wheels to drift * b / sqrt(way) = 0.9 %.
+TEST_F(CliLogs, AnotherOdometryIsAReferenceThatDrifts) {
+  double squares = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    DriveLog log;
+    log.drift = 0.03;
+    log.drift_seed = seed;
+    log.mount_x = 0.11;
+    log.mount_y = 0.02;
+    const Args logs{folder_.file("ticks.csv", log.wheels()),
+                    folder_.file("visual_odometry.csv", log.capture())};
+    const ProcessResult run = calibrate(logs);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("visual_odometry: another odometry, by its name: it drifts"));
+    EXPECT_THAT(run.err, HasSubstr("the reference drifts: --cost=segments"));
+    const std::map<std::string, double> found = calibrated(folder_ / "out/results");
+    EXPECT_NEAR(found.at("b"), DriveLog::kTrack, 0.015 * DriveLog::kTrack) << seed;
+    EXPECT_NEAR(found.at("r_left") + found.at("r_right"), DriveLog::kLeft + DriveLog::kRight, 4e-4) << seed;
+    const double ratio = found.at("r_right") / found.at("r_left") * DriveLog::kLeft / DriveLog::kRight;
+    squares += (ratio - 1) * (ratio - 1) / 4;
+    // x = 112.52 mm, y = 22.18 mm
+    const std::size_t at = run.err.find("the tracked frame sits at x = ");
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NEAR(std::stod(run.err.substr(at + 30)), 110, 5) << seed;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.015);
+  // A cost that is asked for is taken.
+  DriveLog log;
+  log.drift = 0.03;
+  const ProcessResult whole =
+      calibrate({folder_.file("ticks.csv", log.wheels()), folder_.file("visual_odometry.csv", log.capture())},
+                {"--per-turn=1000", "--cost=every_sample"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_THAT(whole.err, Not(HasSubstr("--cost=segments, of")));
+}
+
 TEST_F(CliLogs, SaysWhatTheLogDoesNotSay) {
   const Args logs = drive({});
   const ProcessResult run = run_bench({"calibrate", logs[0], logs[1], "--out=" + out(), "--quiet"});

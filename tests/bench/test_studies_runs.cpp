@@ -22,6 +22,8 @@
 #include "bench/studies/fusion/tuning_study.hpp"
 #include "bench/studies/planning/drive_plan.hpp"
 #include "bench/studies/planning/verification.hpp"
+#include "bench/studies/simulation/discretisation_study.hpp"
+#include "bench/studies/simulation/scenario_study.hpp"
 #include "reports/records/record.hpp"
 #include "tests/support/data/entropy_windows.hpp"
 #include "tests/support/data/filter_run_files.hpp"
@@ -404,6 +406,41 @@ TEST(TuningStudy, RefusesAndStopsBeforeItFits) {
   study.filter = "ekf";
   EXPECT_THROW(tune_filter(study, known(), watcher, stopped()), Interruption);
   EXPECT_THAT(watcher.order, IsEmpty());
+}
+
+TEST(DiscretisationStudy, HasTheMatricesInEveryForm) {
+  DiscretisationStudy study;
+  study.system = source_dir() / "datasets" / "systems" / "turn3d.json";
+  study.period = 0.5;
+  const DiscreteSystem exact = discretise_system(study);
+  ASSERT_FALSE(exact.tables.empty());
+  EXPECT_EQ(exact.tables.front().id, "F");
+  EXPECT_THAT(exact.latex, HasSubstr("\\begin{bmatrix}"));
+  study.order = 1;
+  const DiscreteSystem series = discretise_system(study);
+  EXPECT_EQ(series.tables.back().id, "series_error");
+  EXPECT_THAT(series.json, HasSubstr("\"series_error\""));
+  study.period = 1e200;
+  EXPECT_THROW(discretise_system(study), DataError);
+}
+
+TEST(ScenarioStudy, WritesOnceAndNothingWhereItRefuses) {
+  const TemporaryFolder place;
+  const fs::path folder = place.path() / "scenario";
+  ScenarioStudy study;
+  study.scenario = "off_nominal";
+  study.out = folder;
+  study.as_published = true;
+  Counting watcher;
+  EXPECT_THROW(simulate_scenario(study, watcher, Stop()), std::invalid_argument);
+  EXPECT_THAT(watcher.order, IsEmpty());
+  EXPECT_FALSE(fs::exists(folder / "truth.json"));
+  study.as_published = false;
+  const WrittenScenario written = simulate_scenario(study, watcher, Stop());
+  ASSERT_TRUE(written.dataset);
+  EXPECT_THAT(written.files, ::testing::Contains(folder / "set.json"));
+  EXPECT_THAT(watcher.order, ElementsAre("results"));
+  EXPECT_THROW(simulate_scenario(study, watcher, Stop()), std::invalid_argument);
 }
 
 }  // namespace

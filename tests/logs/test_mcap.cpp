@@ -156,5 +156,30 @@ TEST_F(Mcap, OfJsonIsRead) {
                    {"topic /pose", "broken JSON"}));
 }
 
+// Stamps that are text: of a log that carries what another program wrote.
+TEST_F(Mcap, StampsAsTextAreReadAsTablesReadThem) {
+  testing::WrittenLog log;
+  log.channels = {{"/line", "test_msgs/msg/Line", "string when\nfloat64 x\n"}};
+  for (int k = 0; k < 3; ++k)
+    log.messages.push_back({0, 5'000'000'000 + k,
+                            testing::MessageBytes(RosEncoding::Cdr)
+                                .text("2026-01-31T12:00:0" + std::to_string(k) + ".25+02:00")
+                                .number(0.5 * k)
+                                .bytes()});
+  LogRequest request = testing::log_request("/line", {"x"});
+  request.time = "when";
+  request.time_unit = "iso8601";
+  const auto file = open(mcap_bytes(log));
+  const LogTable table = file->read({request}, {}).front();
+  ASSERT_EQ(table.time_ns.size(), 3u);
+  EXPECT_EQ(table.time_ns[2], 1'769'853'602'250'000'000);
+  EXPECT_EQ(table.values[0][2], 1);
+  request.time_unit = "%H:%M";
+  EXPECT_TRUE(says(data_error([&] { file->read({request}, {}); }),
+                   {"topic /line: when: found \"2026-01-31T12:00:00.25+02:00\"", "a time as \"%H:%M\""}));
+  request.time_unit = "fortnight";
+  EXPECT_THROW(file->read({request}, {}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace odobench

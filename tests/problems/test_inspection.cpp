@@ -252,5 +252,30 @@ TEST(Inspection, OtherClassesHaveTheirFaultsNamed) {
   EXPECT_THAT(texts(inspect(d.robot, d.recordings)), ::testing::HasSubstr("error steering_degrees: "));
 }
 
+void expect_same(const std::vector<Finding>& a, const std::vector<Finding>& b, const std::string& of) {
+  ASSERT_EQ(a.size(), b.size()) << of;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].kind, b[i].kind) << of;
+    EXPECT_EQ(a[i].severity, b[i].severity) << of;
+    EXPECT_EQ(a[i].message, b[i].message) << of;
+    EXPECT_EQ(a[i].figures, b[i].figures) << of << ' ' << a[i].kind;  // to the bit
+    EXPECT_EQ(a[i].recording, b[i].recording) << of;
+    EXPECT_EQ(a[i].wheel, b[i].wheel) << of;
+    EXPECT_EQ(a[i].first, b[i].first) << of;
+    EXPECT_EQ(a[i].last, b[i].last) << of;
+  }
+}
+
+// What is made anew for every check is what stays in memory: every kind of correction on the way.
+TEST(Inspection, RecordingByRecordingTheFindingsAreTheSameToTheBit) {
+  for (const Fault& fault : testing::faults()) {
+    Dataset set = testing::clean_set("4wis4wid", 3);
+    fault.inject(set, fault.sizes.back());
+    const std::vector<Finding> kept = inspect(set.robot, set.recordings, 1);
+    EXPECT_FALSE(kept.empty()) << fault.name;
+    expect_same(kept, inspect(set.robot, set.recordings, 3, 0), fault.name);
+  }
+}
+
 }  // namespace
 }  // namespace odobench

@@ -113,7 +113,7 @@ TEST(UnscentedFilter, StaysNearTheExtendedOneOnTheReferenceDrive) {
 
 // A linear drive: position and velocity in the plane, unknown start, forces, position measured.
 struct LinearCase {
-  LinearModel model;
+  LinearSystemModel model;
   Matrix q, p0, r;
   LinearSensor sensor;
   std::vector<Vector> inputs, measurements;

@@ -64,12 +64,14 @@ std::vector<RunRecord> calibration_records() {
 
 TEST(ComparisonTables, OrderOfTablesAndRowsIsStable) {
   const auto tables = comparison_tables(calibration_records());
-  EXPECT_THAT(ids(tables), ElementsAre("errors.line_x", "errors.circle", "parameters", "totals", "solvers"));
-  EXPECT_THAT(labels(tables[0]), ElementsAre("nominal", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[2]),
+  EXPECT_THAT(ids(tables),
+              ElementsAre("verdict", "errors.line_x", "errors.circle", "parameters", "totals", "solvers"));
+  EXPECT_THAT(labels(tables[0]), ElementsAre("use", "bounds"));
+  EXPECT_THAT(labels(tables[1]), ElementsAre("nominal", "published", "lm", "ga"));
+  EXPECT_THAT(labels(tables[3]),
               ElementsAre("lower bound", "nominal", "upper bound", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[3]), ElementsAre("nominal", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[4]), ElementsAre("nominal", "published", "lm", "x", "ga"));
+  EXPECT_THAT(labels(tables[4]), ElementsAre("nominal", "published", "lm", "ga"));
+  EXPECT_THAT(labels(tables[5]), ElementsAre("nominal", "published", "lm", "x", "ga"));
   EXPECT_TRUE(comparison_tables({}).empty());
   for (Format format : {Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex})
     EXPECT_FALSE(render(tables, format).empty());

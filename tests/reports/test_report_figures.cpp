@@ -260,7 +260,7 @@ std::vector<RunRecord> report_records() {
       r.trace = {{1, 0.01, 90}, {5 * repetition, 0.1, 30}, {100, 0.4 * repetition, *r.cost}};
       r.series = {{"singular_values", {100, 0.1}},
                   {"directions", {1, 0, 0, -1}},
-                  {"standard_deviations", {0.001, 0.5}},
+                  {"sd_if_samples_were_independent", {0.001, 0.5}},
                   {"correlation", {1, 0.25, 0.25, 1}},
                   {"residual_deviation", {0.05}}};
       records.push_back(r);

@@ -90,8 +90,21 @@ ProcessResult Process::wait(double timeout_s) {
   return result;
 }
 
+std::string bench_program() {
+  const char* other = std::getenv("ODOBENCH_BENCH");
+  return other != nullptr ? other : ODOBENCH_BENCH;
+}
+
+bool bench_is_sanitized() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return true;
+#else
+  return std::getenv("ODOBENCH_BENCH_SANITIZED") != nullptr;
+#endif
+}
+
 std::vector<std::string> bench_words(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {ODOBENCH_BENCH};
+  std::vector<std::string> words = {bench_program()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
 }

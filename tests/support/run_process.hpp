@@ -25,6 +25,12 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+// The program under test: that of this build, or the file that the environment variable ODOBENCH_BENCH names.
+// With ODOBENCH_BENCH_SANITIZED=1 that one has sanitizers: what they change (memory, handlers of signals) is
+// not tested then.
+std::string bench_program();
+bool bench_is_sanitized();
+
 struct ProcessResult {
   int exit_code = -1;  // -1 when a signal ended the process
   int signal = 0;      // that signal

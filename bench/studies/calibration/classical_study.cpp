@@ -60,7 +60,9 @@ Finding calibrated_by(const classical::Method& method, const LoadedProblem& load
 Vector problem_parameters(const LoadedProblem& loaded, const classical::Result& result) {
   Vector z = loaded.problem.start();
   z.head(result.z.size()) = result.z;
-  if (z.size() == result.z.size() + 3 && result.mount.size() == 3) z.tail(3) = result.mount;
+  if (z.size() == result.z.size() + 3 && result.mount.size() == 3 &&
+      loaded.problem.parameters().back().name == "mount_yaw")
+    z.tail(3) = result.mount;
   return z;
 }
 

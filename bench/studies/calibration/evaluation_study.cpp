@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "bench/catalogue/loss_choice.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/context.hpp"
@@ -34,11 +35,23 @@ void note_undetermined(Evaluation& evaluation) {
   if (!note.empty()) evaluation.records.front().notes.push_back(note);
 }
 
+// Recordings that a calibration would leave out.
+std::vector<std::string> differing(const LoadedProblem& loaded, double limit, Watcher& watcher) {
+  if (!(limit > 0)) return {};
+  const std::vector<Recording>& recordings = loaded.calibration->recordings();
+  std::vector<std::string> said = unlike_siblings(
+      recordings, screen_siblings(loaded.dataset->robot, recordings, loaded.calibration->options(), limit));
+  for (const std::string& sentence : said) watcher.warn(sentence);
+  return said;
+}
+
 }  // namespace
 
 Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, const Stop& stop) {
   const InstructionSet kernel = kernel_in_force(study.kernel);
-  Evaluation evaluation{load_calibration(study.data, kernel, study.calibration), {}, {}};
+  CalibrationChoice choice = study.calibration;
+  choice.screen = 0;
+  Evaluation evaluation{load_calibration(study.data, kernel, choice), {}, {}};
   for (const std::string& remark : evaluation.loaded.remarks) watcher.warn(remark);
   evaluation.sets = read_judged_parameters(evaluation.loaded, study.parameters, watcher);
   const RunContext context = run_context(1, kernel);
@@ -47,7 +60,9 @@ Evaluation evaluate_parameters(const EvaluationStudy& study, Watcher& watcher, c
     evaluation.records.push_back(evaluation_record(evaluation.loaded, set.label, set.values, context));
     require_finite(evaluation.records.back());
   }
-  evaluation.records.front().notes = say_findings(evaluation.loaded, {}, false, 0, watcher);
+  evaluation.records.front().notes = differing(evaluation.loaded, study.calibration.screen, watcher);
+  for (std::string& finding : say_findings(evaluation.loaded, {}, false, 0, watcher))
+    evaluation.records.front().notes.push_back(std::move(finding));
   note_undetermined(evaluation);
   for (RunRecord& record :
        classical_records(evaluation.loaded, study.classical, context, &evaluation.sets, watcher)) {

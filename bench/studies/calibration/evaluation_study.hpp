@@ -16,7 +16,8 @@ namespace odobench {
 
 struct EvaluationStudy {
   std::string data;  // path of set.json; empty: the demo set
-  CalibrationChoice calibration;
+  // Nothing is left out: what differs from its siblings by more than calibration.screen is a note.
+  CalibrationChoice calibration = screened();
   std::vector<std::string> parameters;  // files, names or run directories, as of read_judged_parameters()
   ClassicalChoice classical;            // methods that are evaluated behind them
   std::optional<InstructionSet> kernel;

@@ -51,8 +51,9 @@ void remark_on_drive(const CalibrationOptions& options, const RunRecord& record,
   const DriveFit& fit = fits[static_cast<std::size_t>(most - parts.begin())];
   remarks.push_back(fmt::format(
       "the drive {} makes {:.0f} % of the squared errors ({:.3g} mm and {:.3g} deg RMS): look "
-      "at it, or leave it out",
-      fit.recording, 100 * *most / all, in_millimetres(fit.rms_position), in_degrees(fit.rms_heading)));
+      "at it, or leave it out{}",
+      fit.recording, 100 * *most / all, in_millimetres(fit.rms_position), in_degrees(fit.rms_heading),
+      options.loss.robust() ? "" : "; --loss=cauchy counts large errors for less"));
 }
 
 }  // namespace

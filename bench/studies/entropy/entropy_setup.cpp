@@ -106,6 +106,8 @@ FilterSetup make_filter_setup(const EntropyOptions& options) {
   reader.resample = options.resample;
   if (options.resample && !options.truth.empty())
     throw std::invalid_argument("--resample and --truth: rows that are filled in have no truth");
+  if (options.compare_kalman && options.truth.empty())
+    throw std::invalid_argument("--compare=kalman: errors are those against a truth; give --truth, too");
   reader.least_rows = setup.constants.samples + setup.rows_unused;
   setup.truth_columns = parse_columns("--truth-columns", options.truth_columns, FilterTruthReader::columns());
   return setup;

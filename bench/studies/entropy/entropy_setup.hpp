@@ -7,6 +7,7 @@
 #include "datasets/entropy/entropy_window.hpp"
 #include "datasets/entropy/filter_run.hpp"
 #include "datasets/entropy/filter_truth.hpp"
+#include "datasets/logs/log_file.hpp"
 #include "problems/entropy/entropy_model.hpp"
 #include "problems/instruction_set.hpp"
 #include "solvers/run.hpp"
@@ -16,7 +17,9 @@ namespace odobench {
 // Where the thesis' program and the corrected filter differ; what is not set follows
 // EntropyOptions::as_published.
 struct EntropyOptions {
-  std::string data;                   // CSV file, "-" for standard input
+  std::string data;                   // CSV file, "-" for standard input; with a map logs, a comma list
+  std::string map;                    // of logs: which fields are wheels, gyro.z, accel.x, accel.y
+  LogOptions log;                     // of such logs
   std::string truth;                  // CSV file; empty: none
   std::string solver = "coordinate";  // coordinate, exact, relaxed, zero, or any of the registry as typed
   std::string out;                    // CSV file, "-" for standard output; empty: none
@@ -32,6 +35,7 @@ struct EntropyOptions {
   EntropyConstants constants;              // dt and step_rotation apart
   std::optional<double> step_rotation;     // deg/s^2
   bool gap = false;                        // compare with exact and relaxed
+  bool compare_kalman = false;             // with a linear filter and smoother; needs truth
   std::optional<InstructionSet> kernel;
   std::uint64_t seed = 1;
   Budget budget{kDefaultMaxEvaluations};  // per window, of a solver of the registry

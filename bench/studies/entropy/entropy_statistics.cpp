@@ -11,8 +11,8 @@ namespace odobench {
 namespace {
 
 // Of the filter's output; what it was given and the control are what they are.
-Better better_at(std::size_t stage) {
-  return std::string_view(kNoiseStages[stage]) == "after" ? Better::Lower : Better::None;
+Better better_at(std::string_view stage) {
+  return stage == "after" ? Better::Lower : Better::None;
 }
 
 // Half of the rotation before the step and half after it: second order in the step.
@@ -57,8 +57,25 @@ void NoiseMeter::add_channel(std::size_t channel, double truth, std::array<doubl
   for (std::size_t stage = 0; stage < 3; ++stage) errors_[channel][stage].add(values[stage] - truth);
 }
 
+const char* NoiseMeter::stage_name(std::size_t stage) {
+  return stage < kNoiseStages.size() ? kNoiseStages[stage] : kComparedStages[stage - kNoiseStages.size()];
+}
+
+// Accelerations of the linear model belong to the sample itself.
+void NoiseMeter::add_compared(std::size_t stage, const TrueSample& truth, const MotionEstimate& e) {
+  for (std::size_t w = 0; w < 4; ++w) {
+    errors_[0][stage].add(e.wheels.x[w] - truth.x[w]);
+    errors_[0][stage].add(e.wheels.y[w] - truth.y[w]);
+    errors_[1][stage].add(std::hypot(e.wheels.x[w], e.wheels.y[w]) - std::hypot(truth.x[w], truth.y[w]));
+  }
+  errors_[2][stage].add(e.state.ax12 - truth.ax);
+  errors_[3][stage].add(e.state.ay12 - truth.ay);
+  errors_[4][stage].add(e.wheels.rotation - truth.rotation);
+  advance(tracks_[stage].pose, e.state.sx1, e.state.sy1, radians_ * e.wheels.rotation);
+}
+
 void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const TrueSample& next,
-                     const FilterOutput& output) {
+                     const FilterOutput& output, const LinearEstimates* compared) {
   const EntropyState& zero = output.zero.state;
   const EntropyPrediction control = predictor_.predict(zero.sx1, zero.sy1, zero.r1);
   double raw_x = 0, raw_y = 0;
@@ -84,25 +101,31 @@ void NoiseMeter::add(const ConvertedRow& row, const TrueSample& truth, const Tru
   advance(tracks_[0].pose, raw_x, raw_y, radians_ * row.sample.rotation);
   advance(tracks_[1].pose, output.state.sx1, output.state.sy1, radians_ * output.first.rotation);
   advance(tracks_[2].pose, zero.sx1, zero.sy1, radians_ * control.rotation);
+  if (compared != nullptr) {
+    add_compared(kNoiseStages.size(), truth, compared->filter);
+    add_compared(kNoiseStages.size() + 1, truth, compared->smoother);
+    stages_ = kStages;
+  }
   for (Deviation& track : tracks_) track.compare(true_pose_);
 }
 
 void NoiseMeter::report(Measures& measures) const {
   for (std::size_t c = 0; c < kNoiseChannels.size(); ++c)
-    for (std::size_t stage = 0; stage < 3; ++stage) {
+    for (std::size_t stage = 0; stage < stages_; ++stage) {
       const Errors& errors = errors_[c][stage];
       const auto put = [&](const char* measure, double value, const char* unit) {
-        measures.put({fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, kNoiseStages[stage]),
-                      value, unit, better_at(stage), kNoiseChannels[c].id});
+        const char* name = stage_name(stage);
+        measures.put({fmt::format("noise.{}.{}.{}", kNoiseChannels[c].id, measure, name), value, unit,
+                      better_at(name), kNoiseChannels[c].id});
       };
       put("rms", std::sqrt(errors.square.mean()), kNoiseChannels[c].unit);
       if (truth_[c].mean() > 0) put("ratio", errors.magnitude.mean() / truth_[c].mean(), "");
       put("max", errors.magnitude.max(), kNoiseChannels[c].unit);
     }
-  for (std::size_t stage = 0; stage < 3; ++stage) {
-    const char* name = kNoiseStages[stage];
-    measures.put({fmt::format("track.end.{}", name), tracks_[stage].end, "m", better_at(stage)});
-    measures.put({fmt::format("track.max.{}", name), tracks_[stage].max, "m", better_at(stage)});
+  for (std::size_t stage = 0; stage < stages_; ++stage) {
+    const char* name = stage_name(stage);
+    measures.put({fmt::format("track.end.{}", name), tracks_[stage].end, "m", better_at(name)});
+    measures.put({fmt::format("track.max.{}", name), tracks_[stage].max, "m", better_at(name)});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "bench/studies/entropy/entropy_setup.hpp"
 #include "bench/studies/entropy/entropy_signals.hpp"
 #include "problems/entropy/sliding_filter.hpp"
+#include "problems/kalman/encoder_smoother.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 
 namespace odobench {
@@ -43,15 +44,21 @@ class Average {
   double sum_ = 0, compensation_ = 0, min_ = 0, max_ = 0;
 };
 
+// Of one sample by the linear filter and by the linear smoother.
+struct LinearEstimates {
+  MotionEstimate filter, smoother;
+};
+
 // Errors of every channel before and after the filter and after the filter without increments, and of the
 // dead reckoning with each, against the truth. The figures are those of
 // reports/kinds/entropy/entropy_tables.hpp.
 class NoiseMeter {
  public:
   explicit NoiseMeter(const FilterSetup& setup);
-  // The first row of the window, the truth of it and of the row after it, and the filter's output.
+  // The first row of the window, the truth of it and of the row after it, the filter's output, and what is
+  // compared with it (null: nothing; of all windows or of none).
   void add(const ConvertedRow& row, const TrueSample& truth, const TrueSample& next,
-           const FilterOutput& output);
+           const FilterOutput& output, const LinearEstimates* compared = nullptr);
   void report(Measures& measures) const;
 
  private:
@@ -64,14 +71,18 @@ class NoiseMeter {
     double end = 0, max = 0;
     void compare(const Pose& truth);
   };
+  static constexpr std::size_t kStages = kNoiseStages.size() + kComparedStages.size();
+  static const char* stage_name(std::size_t stage);
   void add_channel(std::size_t channel, double truth, std::array<double, 3> values);
+  void add_compared(std::size_t stage, const TrueSample& truth, const MotionEstimate& estimate);
 
   double radians_;  // counter-clockwise, of one degree of the model's rotation
   Predictor predictor_;
-  std::array<std::array<Errors, 3>, kNoiseChannels.size()> errors_{};  // channel, stage
-  std::array<Average, kNoiseChannels.size()> truth_{};                 // |truth|
+  std::array<std::array<Errors, kStages>, kNoiseChannels.size()> errors_{};  // channel, stage
+  std::array<Average, kNoiseChannels.size()> truth_{};                       // |truth|
   Pose true_pose_;
-  std::array<Deviation, 3> tracks_{};
+  std::array<Deviation, kStages> tracks_{};
+  std::size_t stages_ = kNoiseStages.size();  // that there is something of
 };
 
 // Effort, H and gaps of the method.

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +16,8 @@
 #include "bench/studies/entropy/entropy_search.hpp"
 #include "bench/studies/entropy/entropy_signals.hpp"
 #include "bench/studies/entropy/entropy_statistics.hpp"
+#include "bench/studies/entropy/filter_input.hpp"
+#include "bench/studies/entropy/linear_comparison.hpp"
 #include "bench/studies/entropy/unit_watch.hpp"
 #include "reports/kinds/entropy/entropy_tables.hpp"
 #include "solvers/lattice/ternary_search.hpp"
@@ -31,67 +32,11 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// A row of the data with its truth.
-struct FilterInput {
-  FilterRow row;
-  FilterTruth truth;
-};
-
-// Data and truth in step with each other, without the rows at the end that are not to be used.
-class InputRows {
- public:
-  InputRows(const EntropyOptions& options, const FilterSetup& setup, const Stop& stop)
-      : unused_(static_cast<std::size_t>(setup.rows_unused)), data_(options.data, with_stop(setup, stop)) {
-    if (options.truth.empty()) return;
-    truth_.emplace(options.truth, setup.truth_columns, stop.flag());
-    FilterTruth passed;
-    for (std::int64_t i = 0; i < data_.passed_over(); ++i)
-      if (!truth_->next(passed) && !truth_->interrupted()) truth_->too_short(data_.file());
-  }
-
-  const FilterRunReader& data() const { return data_; }
-  bool has_truth() const { return truth_.has_value(); }
-  bool interrupted() const { return data_.interrupted() || (truth_ && truth_->interrupted()); }
-
-  bool next(FilterInput& input) {
-    while (ahead_.size() <= unused_)
-      if (!read()) return false;
-    input = ahead_.front();
-    ahead_.pop_front();
-    return true;
-  }
-
- private:
-  static FilterRunOptions with_stop(const FilterSetup& setup, const Stop& stop) {
-    FilterRunOptions options = setup.reader;
-    options.interrupt = stop.flag();
-    return options;
-  }
-
-  bool read() {
-    FilterInput input;
-    const bool any = data_.next(input.row);
-    if (truth_ && !interrupted()) {
-      const bool known = truth_->next(input.truth);
-      if (interrupted()) return false;
-      if (any && !known) truth_->too_short(data_.file());
-      if (!any && known) truth_->too_long(data_.file());
-    }
-    if (any) ahead_.push_back(input);
-    return any;
-  }
-
-  const std::size_t unused_;
-  FilterRunReader data_;
-  std::optional<FilterTruthReader> truth_;
-  std::deque<FilterInput> ahead_;
-};
-
 // Everything that happens to a window.
 class FilterRun {
  public:
   FilterRun(const EntropyOptions& options, const Catalogue& catalogue, const FilterSetup& setup,
-            InstructionSet kernel, const FilterRunReader& data, const TextSink& standard_output,
+            InstructionSet kernel, const FilterInputs& data, const TextSink& standard_output,
             const Stop& stop)
       : catalogue_(catalogue),
         setup_(setup),
@@ -113,6 +58,7 @@ class FilterRun {
     if (!options.out.empty())
       file_.emplace(options.out, existing_files(options.overwrite), standard_output, setup.constants.samples,
                     data.has_time(), setup.rotation_sign);
+    if (options.compare_kalman) linear_.emplace(profile_);
     if (!options.gap) return;
     exact_search_ = ternary_exact(
         profile_.blocks(), [stop] { return stop.requested(); }, kernel);
@@ -131,7 +77,10 @@ class FilterRun {
     lines_.push(input.row.line);
     if (with_truth_) truths_.push(converter_.convert(input.truth));
     if (method_.registry != nullptr) method_.registry->observe(row.sample);
+    if (linear_) linear_->entropy().begin();
     const FilterOutput* output = filter_.push(row.sample);
+    if (linear_) linear_->entropy().end();
+    if (linear_) linear_->push(row.sample);
     const FilterOutput* exact = exact_ ? exact_->push(row.sample) : nullptr;
     const FilterOutput* relaxed = relaxed_ ? relaxed_->push(row.sample) : nullptr;
     if (stop_.requested()) return false;
@@ -142,7 +91,8 @@ class FilterRun {
     };
     method_meter_.add(*output, value(exact), value(relaxed));
     signals_.add(rows_[0], *output, with_truth_ ? &truths_[0] : nullptr, with_truth_ ? &truths_[1] : nullptr);
-    if (with_truth_) noise_.add(rows_[0], truths_[0], truths_[1], *output);
+    if (linear_) compared_ = linear_->estimates();
+    if (with_truth_) noise_.add(rows_[0], truths_[0], truths_[1], *output, linear_ ? &compared_ : nullptr);
     if (file_) file_->add(*output, times_[0]);
     return true;
   }
@@ -191,6 +141,8 @@ class FilterRun {
   std::optional<FilterOutputFile> file_;
   std::unique_ptr<BlockSearch> exact_search_, relaxed_search_;
   std::optional<SlidingFilter> exact_, relaxed_;
+  std::optional<LinearComparison> linear_;
+  LinearEstimates compared_;
 };
 
 RunRecord FilterRun::record(double seconds) const {
@@ -207,6 +159,7 @@ RunRecord FilterRun::record(double seconds) const {
   r.seconds = seconds;
   method_meter_.report(r.measures);
   if (with_truth_) noise_.report(r.measures);
+  if (linear_) linear_->report(r.measures);
   signals_.report(r.series);
   method_meter_.histogram().report(r.series);
   r.measures.put({"rows", static_cast<double>(count_), ""});
@@ -257,17 +210,6 @@ void describe_run(const EntropyOptions& options, const FilterSetup& setup, const
   if (run.unfinished) record.notes.push_back("the last line of the file has no line break; it was taken");
 }
 
-std::vector<std::string> timing_notes(const FilterRunReader& data) {
-  std::vector<std::string> notes;
-  if (data.jittered() > 0)
-    notes.push_back(fmt::format(
-        "time_s: {} steps differ from the period of {:g} s, by up to {:.2g} s: taken as jitter of the stamps",
-        data.jittered(), data.dt(), data.jitter()));
-  if (data.filled() > 0)
-    notes.push_back(fmt::format("{} missing rows filled in by --resample", data.filled()));
-  return notes;
-}
-
 }  // namespace
 
 FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue,
@@ -279,24 +221,25 @@ FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue
                      kernel, stop);
   const std::string begin_utc = utc_now();
   const Clock::time_point begin = Clock::now();
-  InputRows rows(options, setup, stop);
-  if (options.theta && !rows.data().thesis_layout())
+  const std::unique_ptr<FilterInputs> inputs = open_filter_inputs(options, setup, stop);
+  if (options.theta && !inputs->thesis_layout())
     throw std::invalid_argument(fmt::format(
         "--theta={}: {} names its rotation column with a unit; the option is for the thesis' layout",
         *options.theta, options.data));
-  setup.constants.dt = rows.data().dt();
+  setup.constants.dt = inputs->dt();
+  for (const std::string& text : inputs->report) watcher.note(text);
   watcher.results_begin();
-  FilterRun run(options, catalogue, setup, kernel, rows.data(), standard_output, stop);
+  FilterRun run(options, catalogue, setup, kernel, *inputs, standard_output, stop);
   watcher.count_begins("windows", 0);
   FilterInput input;
-  while (rows.next(input) && run.push(input))
+  while (inputs->next(input) && run.push(input))
     if (run.slow() || run.windows() % 1024 == 0) watcher.count_is(run.windows());
   watcher.count_ends();
 
   FilteredRun result;
   result.interrupted = stop.requested();
   result.windows = run.windows();
-  result.unfinished = rows.data().unfinished();
+  result.unfinished = inputs->unfinished();
   if (result.windows == 0) throw Interruption();
   result.record = run.record(seconds_since(begin));
   describe_run(options, setup, result, result.record);
@@ -304,7 +247,7 @@ FilteredRun filter_run(const EntropyOptions& options, const Catalogue& catalogue
     watcher.warn(text);
     result.record.notes.push_back(text);
   }
-  for (const std::string& text : timing_notes(rows.data())) {
+  for (const std::string& text : inputs->notes()) {
     watcher.note(text);
     result.record.notes.push_back(text);
   }

@@ -12,6 +12,7 @@
 #include "base/angle.hpp"
 #include "base/text.hpp"
 #include "bench/studies/exporting/found_values.hpp"
+#include "bench/studies/exporting/noise_keys.hpp"
 
 namespace odobench {
 namespace {
@@ -102,7 +103,7 @@ void skid_steer(const FoundValues& values, bool absolute, KeyTable& table) {
   };
   const double real = track_of(values.file().nominal_wheels) / slip.nominal;
   FoundNumber track{"slip * b", "m", track_of(values.file().wheels), real, std::nullopt};
-  if (slip.deviation) track.deviation = *slip.deviation * real;
+  if (slip.half_width) track.half_width = *slip.half_width * real;
   differential_keys(track, values, absolute, table);
 }
 
@@ -283,6 +284,7 @@ KeyTable controller_keys(const ParameterFile& file, bool absolute) {
                     "wheel",
                     shown(kind)));
   refuse_backwards(file);
+  add_noise_keys(file, !kind.starts_with("swerve") && kind != "4wis4wid", table);
   return table;
 }
 
@@ -314,10 +316,12 @@ KeyTable generic_keys(const ParameterFile& file) {
     const ParameterValue& p = found.parameter;
     std::string name = p.name;
     std::replace(name.begin(), name.end(), '.', '_');
-    table.keys.push_back({"parameters." + name, decimal(p.value, digits_of(p.unit)),
-                          remark_on({p.name, p.unit, p.value, p.nominal, found.deviation, p.at_bound})});
+    table.keys.push_back(
+        {"parameters." + name, decimal(p.value, digits_of(p.unit)),
+         remark_on({p.name, p.unit, p.value, p.nominal, found.half_width, p.at_bound, found.decided_by})});
   }
   add_wheel_keys(file, table);
+  add_noise_terms(file, table);
   return table;
 }
 

@@ -182,7 +182,8 @@ std::string c_text(const ParameterFile& file, const std::string& prefix) {
   std::set<std::string> taken;
   for (const ExportKey& key : generic_keys(file).keys) {
     // Behind "parameters." and "wheels.".
-    const std::string base = head + "_" + upper_name(key.path.substr(key.path.find('.') + 1));
+    const std::size_t from = key.path.starts_with("noise.") ? 0 : key.path.find('.') + 1;
+    const std::string base = head + "_" + upper_name(key.path.substr(from));
     std::string own = base;
     for (int k = 2; !taken.insert(own).second; ++k) own = fmt::format("{}_{}", base, k);
     text += fmt::format("#define {} ({}) /* {} */\n", own, key.value,

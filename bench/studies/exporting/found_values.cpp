@@ -15,7 +15,7 @@ namespace {
 
 FoundNumber number_of(const FoundParameter& found) {
   const ParameterValue& p = found.parameter;
-  return {p.name, p.unit, p.value, p.nominal, found.deviation, p.at_bound};
+  return {p.name, p.unit, p.value, p.nominal, found.half_width, p.at_bound, found.decided_by};
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
@@ -26,8 +26,13 @@ std::string bound_remark(const FoundNumber& n) {
   return n.at_bound.empty() ? "" : fmt::format(", on its {} bound", printable(n.at_bound));
 }
 
-std::string deviation_text(double deviation) {
-  return fmt::format(", +- {:.2g}", deviation);
+// Only that the box decides; other reasons (too few recordings) are in the parameter file.
+std::string box_remark(const FoundNumber& n) {
+  return n.decided_by.rfind("decided by the box", 0) == 0 ? ", decided by the box" : "";
+}
+
+std::string interval_text(double half_width) {
+  return fmt::format(", +- {:.2g}", half_width);
 }
 
 // Letters, digits and _, a letter first.
@@ -53,16 +58,16 @@ int digits_of(std::string_view unit) {
 std::string remark_on(const FoundNumber& n) {
   const int digits = digits_of(n.unit);
   std::string text = "nominal " + decimal(n.nominal, digits);
-  if (n.deviation) text += deviation_text(*n.deviation);
-  return with_unit(text, n.unit) + bound_remark(n);
+  if (n.half_width) text += interval_text(*n.half_width);
+  return with_unit(text, n.unit) + bound_remark(n) + box_remark(n);
 }
 
 std::string words_of(const FoundNumber& n) {
   const int digits = digits_of(n.unit);
   std::string text = fmt::format("{} {}, nominal {}", printable(n.name),
                                  with_unit(decimal(n.value, digits), n.unit), decimal(n.nominal, digits));
-  if (n.deviation) text += deviation_text(*n.deviation);
-  return text + bound_remark(n);
+  if (n.half_width) text += interval_text(*n.half_width);
+  return text + bound_remark(n) + box_remark(n);
 }
 
 MeanNumber mean_of(const std::vector<FoundNumber>& numbers) {

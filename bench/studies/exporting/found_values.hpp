@@ -18,8 +18,9 @@ int digits_of(std::string_view unit);
 struct FoundNumber {
   std::string name, unit;
   double value = 0, nominal = 0;
-  std::optional<double> deviation;
+  std::optional<double> half_width;  // of the 95 % interval
   std::string at_bound = {};
+  std::string decided_by = {};  // why there is no interval, in words
 };
 // "b 0.200123 m, nominal 0.200000, +- 0.000012"; that it lies on a bound.
 std::string words_of(const FoundNumber& number);

@@ -153,7 +153,8 @@ std::string believed(const SyntheticSensor& s) {
 }
 
 std::string made_with(const SyntheticSensor& s) {
-  if (!s.file.empty()) return "measured: " + shown(s.file);
+  if (!s.file.empty())
+    return "measured: " + shown(s.file) + (s.standing.empty() ? "" : ", less what it said standing");
   if (s.stream.kind == SensorKind::YawRate)
     return fmt::format("bias {:g} rad/s, walk {:g} rad/s/√s, white {:g} rad/s", s.gyro.bias, s.gyro.bias_walk,
                        s.gyro.noise);
@@ -164,7 +165,8 @@ std::string made_with(const SyntheticSensor& s) {
 
 }  // namespace
 
-Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset) {
+Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset,
+                   const std::vector<std::string>& wheels) {
   Table table;
   table.id = "sensors";
   const auto synthetic = std::count_if(file.sensors.begin(), file.sensors.end(),
@@ -192,8 +194,7 @@ Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::strin
                           s.file.empty() ? text_cell(fmt::format("{:g} %", 100 * s.timing.missing)) : Cell{},
                           text_cell(made_with(s)), text_cell(believed(s))});
   if (!file.description.empty()) table.notes.push_back(file.description);
-  table.notes.push_back(fmt::format("Wheels in the filter: σ {:g} m/s and {:g} rad/s of a sample.",
-                                    file.options.sigma_velocity, file.options.sigma_yaw_rate));
+  table.notes.insert(table.notes.end(), wheels.begin(), wheels.end());
   return table;
 }
 

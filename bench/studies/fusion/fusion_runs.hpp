@@ -44,7 +44,9 @@ FusedRow fuse_all(std::span<const Recording> recordings, const Vector& z, const 
 std::vector<std::vector<SensorStream>> all_streams(const SensorsFile& file,
                                                    std::span<const Recording> recordings, std::uint64_t seed,
                                                    int threads, const Stop& stop);
-// The table that says that the sensors are synthetic, and what they are.
-Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset);
+// The table that says that the sensors are synthetic, and what they are; `wheels`: notes on what the filter
+// believes of them.
+Table sensor_table(const SensorsFile& file, std::uint64_t seed, const std::string& dataset,
+                   const std::vector<std::string>& wheels);
 
 }  // namespace odobench

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/fusion/fusable_recordings.hpp"
 #include "bench/studies/fusion/fusion_remarks.hpp"
 #include "bench/studies/fusion/fusion_runs.hpp"
+#include "bench/studies/fusion/wheel_noise.hpp"
 #include "bench/studies/inspection/inspection_study.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/run_tracks.hpp"
@@ -56,10 +59,10 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
   const SensorsFile sensors = read_sensors(study.sensors);
   const InstructionSet kernel = kernel_in_force(study.kernel);
   const LoadedProblem loaded = load_calibration(study.data, kernel);
-  require_4wis4wid(loaded, "sensor fusion");
+  const FusableRecordings fusable = fusable_recordings(loaded);
   const std::vector<std::string> findings = say_findings(loaded, {}, false, study.threads, watcher);
   const std::vector<ParameterSet> sets = read_parameter_list(loaded, study.parameters, watcher);
-  const std::vector<Recording>& recordings = loaded.calibration->recordings();
+  const std::vector<Recording>& recordings = fusable.recordings;
   const std::uint64_t seed = study.seed.value_or(sensors.seed);
   const double measurements = require_measurements(sensors, recordings);
   const auto times = static_cast<double>(filters.size() * sets.size());
@@ -67,19 +70,28 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
       fmt::format("--sensors={}: {:.2g} measurements, filtered {} times", study.sensors, measurements, times),
       measurements * times * kSecondsPerMeasurement, watcher);
 
-  const auto streams = all_streams(sensors, recordings, seed, study.threads, stop);
+  const WheelNoiseChoice choice = wheel_noise_choice(study.odometry_noise, sensors);
+  std::vector<SensorsFile> believed(sets.size(), sensors);
+  std::vector<std::string> wheels;
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    std::string text = believe_wheels(choice, loaded, sets[k].values, sets[k].label, believed[k]);
+    if (std::find(wheels.begin(), wheels.end(), text) == wheels.end()) wheels.push_back(std::move(text));
+  }
+  auto streams = all_streams(sensors, recordings, seed, study.threads, stop);
+  shift_streams(fusable, sensors, streams);
   FusionRuns runs;
   runs.tracks = reference_tracks(kFusionProblem, loaded);
-  runs.sensors = sensor_table(sensors, seed, loaded.dataset_name());
+  runs.sensors = sensor_table(sensors, seed, loaded.dataset_name(), wheels);
   const RunRecord common =
       common_record(loaded, seed, runs.sensors, run_context(thread_count(study.threads), kernel));
   for (const FilterChoice& filter : filters)
-    for (const ParameterSet& set : sets) {
-      FusedRow fused = fuse_all(recordings, set.values, filter, sensors, streams, study.threads, stop);
+    for (std::size_t k = 0; k < sets.size(); ++k) {
+      const ParameterSet& set = sets[k];
+      FusedRow fused = fuse_all(recordings, set.values, filter, believed[k], streams, study.threads, stop);
       fused.row.label = filter.filtered ? set.label + "+" + filter.name : set.label;
       RunRecord record = common;
       for (const std::string& text :
-           fusion_remarks(sensors, fused.row, row_of_wheels(runs.rows, set.label))) {
+           fusion_remarks(believed[k], fused.row, row_of_wheels(runs.rows, set.label))) {
         record.notes.push_back(fused.row.label + ": " + text);
         watcher.warn(record.notes.back());
       }

@@ -19,6 +19,7 @@ struct FusionStudy {
   std::vector<std::string> parameters;  // files or names, as of read_parameter_list()
   std::vector<std::string> filters;     // comma lists; empty: none,ekf,ukf
   std::string sensors;                  // file
+  std::string odometry_noise;           // as wheel_noise_choice() takes it
   std::optional<std::uint64_t> seed;    // instead of the file's
   int threads = 0;                      // 0: one per core; results do not depend on them
   std::optional<InstructionSet> kernel;

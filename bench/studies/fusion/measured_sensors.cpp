@@ -58,6 +58,8 @@ void read_measurements(const SensorsFile& file, const SyntheticSensor& sensor, c
                                                   : std::vector<std::string>{"x", "y", "heading"};
   const LogTable table = read_table(path, sensor, what, stop);
   const auto delay = static_cast<std::int64_t>(std::llround(sensor.timing.delay_s * 1e6));
+  const auto standing = sensor.standing.find(recording.id);
+  const double bias = standing == sensor.standing.end() ? 0 : standing->second;
   for (std::size_t k = 0; k < table.time_ns.size(); ++k) {
     bool whole = true;
     for (const std::vector<double>& column : table.values) whole = whole && std::isfinite(column[k]);
@@ -66,7 +68,7 @@ void read_measurements(const SensorsFile& file, const SyntheticSensor& sensor, c
     m.time_us = std::llround(static_cast<double>(table.time_ns[k]) * 1e-3);
     m.arrival_us = m.time_us + delay;
     if (gyro)
-      m.value[0] = table.values[0][k] * sensor.rate_scale;
+      m.value[0] = table.values[0][k] * sensor.rate_scale - bias;
     else if (heading)
       m.value[2] = wrapped_angle(table.values[0][k] * sensor.heading_scale);
     else

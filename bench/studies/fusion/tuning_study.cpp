@@ -197,7 +197,10 @@ Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher
     for (std::vector<SensorStream>& one : streams) model->apply(setting.x, changed.options, one);
     setting.judged = fuse_all(judge, sets[0].values, filter, changed, streams, 0, stop);
   }
-  tuning.sensors = sensor_table(sensors, seed, loaded.dataset_name());
+  tuning.sensors =
+      sensor_table(sensors, seed, loaded.dataset_name(),
+                   {fmt::format("Wheels in the filter: σ {:g} m/s and {:g} rad/s of a sample.",
+                                sensors.options.sigma_velocity, sensors.options.sigma_yaw_rate)});
   tuning.best_sensors = best_sensors(study, *model, sensors, settings);
   tuning.records = tuning_records(problem, settings, loaded, study, seed);
   return tuning;

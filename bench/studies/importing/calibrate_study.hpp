@@ -7,7 +7,9 @@
 
 #include "base/stop.hpp"
 #include "bench/catalogue/catalogue.hpp"
+#include "bench/catalogue/problem_factory.hpp"
 #include "bench/studies/importing/map_answers.hpp"
+#include "bench/studies/trust/trust_choice.hpp"
 #include "bench/studies/watcher.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/logs/log_file.hpp"
@@ -20,8 +22,11 @@ struct CalibrateStudy {
   std::filesystem::path map;                // "": proposed
   MapAnswers answers;                       // to the proposal
   LogOptions options;
+  // Cost and mount of the fit. Without a cost: segments where the reference proposed is another odometry.
+  CalibrationChoice calibration = screened();
   std::vector<std::string> accept;  // kinds of findings that do not stop the calibration, comma lists
-  std::filesystem::path out;        // folder: map.json, set.json, results/, report.html
+  ValidationChoice validation;
+  std::filesystem::path out;  // folder: map.json, set.json, results/, report.html
   bool overwrite = false;
 };
 

@@ -65,6 +65,7 @@ class Proposer {
       if (!names_.contains(number(source)) && source.source.unreadable.empty())
         unused_.push_back(
             shown(source.source.name.empty() ? source.file.filename().string() : source.source.name));
+    out.drifts = roles_.drifts;
     out.map = map(false).dump(2) + "\n";
     out.reasons = std::move(roles_.reasons);
     if (!unused_.empty()) out.reasons.push_back(fmt::format("not used: {}", fmt::join(unused_, ", ")));

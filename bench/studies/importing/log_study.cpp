@@ -25,7 +25,7 @@ ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& st
     out.report.insert(out.report.end(), log.report.begin(), log.report.end());
   LogAlignment aligned = align_logs(loaded, stop);
   for (const std::string& text : aligned.warnings) watcher.warn(text);
-  out.dataset = make_dataset(loaded, aligned.adjustment);
+  out.dataset = make_dataset(loaded, aligned.adjustment, &out.sensors);
   for (std::string& text : aligned.report) out.dataset.notes.push_back(std::move(text));
   for (std::string& text : log_import::describe_drives(out.dataset)) out.report.push_back(std::move(text));
   return out;

@@ -9,6 +9,7 @@
 #include "bench/studies/watcher.hpp"
 #include "datasets/dataset.hpp"
 #include "datasets/logs/log_file.hpp"
+#include "datasets/sensor_rows.hpp"
 #include "reports/render/table.hpp"
 
 namespace odobench {
@@ -23,6 +24,7 @@ struct LogStudy {
 
 struct ImportedLogs {
   Dataset dataset;                  // what was repaired or left out stands in its notes
+  SetSensors sensors;               // gyro and camera, where the map names them
   std::vector<std::string> report;  // signals, clocks, drives; a line each
 };
 

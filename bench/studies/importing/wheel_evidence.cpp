@@ -7,7 +7,7 @@
 namespace odobench {
 namespace {
 
-constexpr double kStep = 0.05, kSpan = 0.2;  // s
+constexpr double kStep = 0.05, kSlopeSpan = 0.2;  // s
 
 }  // namespace
 
@@ -17,7 +17,7 @@ std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, d
     from = std::max(from, signal.time.front());
     to = std::min(to, signal.time.back());
   }
-  const auto count = static_cast<Eigen::Index>((to - from - kSpan) / kStep);
+  const auto count = static_cast<Eigen::Index>((to - from - kSlopeSpan) / kStep);
   if (!(to - from > 1) || count < 10) return {};
   Eigen::MatrixX2d motion(count, 2);
   std::size_t hx = 0, hy = 0, ht = 0;
@@ -27,7 +27,7 @@ std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, d
   };
   for (Eigen::Index k = 0; k < count; ++k) {
     const double t = from + kStep * static_cast<double>(k);
-    const Eigen::Vector3d a = pose(t), b = pose(t + kSpan), d = (b - a) / kSpan;
+    const Eigen::Vector3d a = pose(t), b = pose(t + kSlopeSpan), d = (b - a) / kSlopeSpan;
     const double heading = (a[2] + b[2]) / 2;
     motion(k, 0) = std::cos(heading) * d[0] + std::sin(heading) * d[1];
     motion(k, 1) = d[2];
@@ -41,7 +41,7 @@ std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, d
     for (Eigen::Index k = 0; k < count; ++k) {
       const double t = from + kStep * static_cast<double>(k);
       const double before = signal.at(t, hint);
-      rate[k] = (signal.at(t + kSpan, hint) - before) / kSpan;
+      rate[k] = (signal.at(t + kSlopeSpan, hint) - before) / kSlopeSpan;
     }
     const Eigen::Vector2d z = normal.ldlt().solve(motion.transpose() * rate);
     const double total = rate.squaredNorm();

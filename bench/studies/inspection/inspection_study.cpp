@@ -123,8 +123,10 @@ std::vector<std::string> told_findings(const std::vector<inspection::Finding>& f
 std::vector<std::string> say_findings(const LoadedProblem& loaded, const AcceptedKinds& accepted,
                                       bool calibrates, int threads, Watcher& watcher) {
   if (!loaded.calibration || !loaded.dataset) return {};
-  std::vector<inspection::Finding> findings =
-      inspect_recordings(loaded.dataset->robot, loaded.calibration->recordings(), threads);
+  std::vector<Recording> all;  // with what was left out, of which it is to be known why
+  if (!loaded.set_aside.empty()) all = loaded.all_recordings();
+  std::vector<inspection::Finding> findings = inspect_recordings(
+      loaded.dataset->robot, all.empty() ? loaded.calibration->recordings() : all, threads);
   std::erase_if(findings, [](const inspection::Finding& f) { return f.kind == "layout_asymmetric"; });
   for (const inspection::Finding& f : findings)
     if (calibrates && f.severity == Severity::Error && !accepted.holds(f.kind))

@@ -139,6 +139,8 @@ class CurveReader {
       curve.time.push_back(static_cast<double>(rows.time_ns[k] - out_.begin_ns) * 1e-9);
       curve.value.push_back(values[k] + field.add);
     }
+    if (rows.delay_median_s && *rows.delay_median_s < 0 && *rows.delay_median_s > -1)
+      curve.delay_s = -*rows.delay_median_s;
     if (curve.time.size() < 2)
       throw DataError(fmt::format("{}: {} rows of {}, expected two at least",
                                   shown_path(rows_.file_of(field.source)), curve.time.size(), name));

@@ -17,6 +17,7 @@ struct Curve {
   std::string name;    // of the signal
   std::string source;  // whose clock it has
   std::vector<double> time, value;
+  double delay_s = 0;  // from stamp to log, the median, where it lies between 0 and 1 s
 
   // At t, which lies within the stamps (the value at the nearer end, else). `at`: where the last search
   // ended, from 0; searches that go forward take constant time.

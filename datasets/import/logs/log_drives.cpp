@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "datasets/import/logs/drive_parts.hpp"
+#include "datasets/import/logs/drive_sensors.hpp"
 
 namespace odobench::log_import {
 namespace {
@@ -18,7 +19,7 @@ class DriveMaker {
  public:
   DriveMaker(const LogMap& map, const LogCurves& curves, const Mount& mount,
              const std::map<std::string, double>& offsets)
-      : map_(map), curves_(curves), mount_(mount) {
+      : map_(map), curves_(curves), mount_(mount), sensors_(map, curves, offsets) {
     reference_shift_ = shift(curves.x.source, offsets);
     for (const Curve& signal : curves.signals) shifts_.push_back(shift(signal.source, offsets));
   }
@@ -27,9 +28,11 @@ class DriveMaker {
     LogDrives out;
     const PartFinder finder(map_, curves_, reference_shift_, shifts_);
     for (const Part& part : finder.find(out.notes)) {
-      Recording recording = record(part);
+      std::vector<SensorRows> sensors;
+      Recording recording = record(part, &sensors);
       if (recording.size() < 2 || recording.reference.x.size() < 2) continue;
       out.recordings.push_back(std::move(recording));
+      out.sensors.push_back(std::move(sensors));
       out.names.push_back(part.name);
     }
     if (out.recordings.empty())
@@ -90,7 +93,7 @@ class DriveMaker {
     return kept;
   }
 
-  Recording record(const Part& part) const {
+  Recording record(const Part& part, std::vector<SensorRows>* sensors) const {
     Recording r;
     std::vector<std::size_t> rows;
     const std::vector<double> t = grid(part, r.reference.sample, rows);
@@ -121,12 +124,14 @@ class DriveMaker {
       r.reference.x.push_back(curves_.x.value[k] - c * mount_.x + s * mount_.y);
       r.reference.y.push_back(curves_.y.value[k] - s * mount_.x - c * mount_.y);
     }
+    if (sensors != nullptr) *sensors = sensors_.of_drive(r, t.front(), t.back());
     return r;
   }
 
   const LogMap& map_;
   const LogCurves& curves_;
   Mount mount_;
+  DriveSensors sensors_;
   double reference_shift_ = 0;
   std::vector<double> shifts_;  // of the signals
 };

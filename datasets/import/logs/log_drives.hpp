@@ -17,6 +17,7 @@
 #include "datasets/import/logs/log_curves.hpp"
 #include "datasets/import/logs/log_map.hpp"
 #include "datasets/recording.hpp"
+#include "datasets/sensor_rows.hpp"
 
 namespace odobench::log_import {
 
@@ -25,9 +26,10 @@ struct Mount {
 };
 
 struct LogDrives {
-  std::vector<Recording> recordings;  // without trajectory, repetition and id
-  std::vector<std::string> names;     // of marks; "" where there is none
-  std::vector<std::string> notes;     // what was cut off, split and left out, with counts
+  std::vector<Recording> recordings;             // without trajectory, repetition and id
+  std::vector<std::vector<SensorRows>> sensors;  // of each
+  std::vector<std::string> names;                // of marks; "" where there is none
+  std::vector<std::string> notes;                // what was cut off, split and left out, with counts
 };
 
 // By what the map says of drives, limits and splitting. `offsets`: by how much the clocks of sources run

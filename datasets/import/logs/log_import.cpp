@@ -27,8 +27,8 @@ std::vector<fs::path> files_in(const fs::path& log) {
 
 class DatasetMaker {
  public:
-  DatasetMaker(const LoadedLogs& loaded, const Adjustment& adjustment)
-      : loaded_(loaded), adjustment_(adjustment) {}
+  DatasetMaker(const LoadedLogs& loaded, const Adjustment& adjustment, SetSensors* sensors)
+      : loaded_(loaded), adjustment_(adjustment), sensors_(sensors) {}
 
   Dataset make() {
     const LogMap& map = loaded_.map;
@@ -57,6 +57,7 @@ class DatasetMaker {
     for (std::size_t k = 0; k < drives.recordings.size(); ++k) {
       Recording& r = drives.recordings[k];
       name(r, drives.names[k].empty() ? log.id : drives.names[k]);
+      if (sensors_ != nullptr && !drives.sensors[k].empty()) (*sensors_)[r.id] = std::move(drives.sensors[k]);
       set_.recordings.push_back(std::move(r));
       logs_.push_back(log.files);
     }
@@ -79,6 +80,7 @@ class DatasetMaker {
 
   const LoadedLogs& loaded_;
   const Adjustment& adjustment_;
+  SetSensors* sensors_;
   Dataset set_;
   std::vector<std::vector<fs::path>> logs_;  // of each recording
   std::size_t next_name_ = 0;
@@ -114,8 +116,8 @@ Adjustment adjustment_of(const LogMap& map) {
   return {{}, {map.mount_x, map.mount_y, map.mount_yaw}};
 }
 
-Dataset make_dataset(const LoadedLogs& loaded, const Adjustment& adjustment) {
-  return DatasetMaker(loaded, adjustment).make();
+Dataset make_dataset(const LoadedLogs& loaded, const Adjustment& adjustment, SetSensors* sensors) {
+  return DatasetMaker(loaded, adjustment, sensors).make();
 }
 
 std::vector<std::string> describe_drives(const Dataset& dataset) {

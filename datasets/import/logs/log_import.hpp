@@ -40,8 +40,8 @@ Adjustment adjustment_of(const LogMap& map);
 
 // Drives are called by the map's names, their marks, else by their log: "square_2" is repetition 2 of
 // "square"; further drives of one log get the next free number. Of a map with end poses only drives that have
-// one are left.
-Dataset make_dataset(const LoadedLogs& loaded, const Adjustment& adjustment);
+// one are left. `sensors` gets what gyro and camera measured in them, where it is given.
+Dataset make_dataset(const LoadedLogs& loaded, const Adjustment& adjustment, SetSensors* sensors = nullptr);
 
 // One line per drive: id, samples, seconds, metres, degrees turned to the left and to the right.
 std::vector<std::string> describe_drives(const Dataset& dataset);

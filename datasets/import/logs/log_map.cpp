@@ -98,7 +98,7 @@ MappedField read_reference(const JsonNode& node, const std::string& target, cons
   return field;
 }
 
-void read_signals(const JsonNode& node, LogMap& map) {
+void read_signals(const JsonNode& node, LogMap& map, MapUse use) {
   SignalReader signals(node, map);
   for (const std::string& key : node.keys()) {
     const JsonNode one = node.at(key);
@@ -115,6 +115,7 @@ void read_signals(const JsonNode& node, LogMap& map) {
     if (!map.reference.empty()) node.fail("a reference beside end poses", "one of them");
     return;
   }
+  if (use == MapUse::Filter && map.reference.empty()) return;
   for (const char* target : {"reference.x", "reference.y", "reference.heading"})
     if (std::none_of(map.reference.begin(), map.reference.end(),
                      [&](const MappedField& f) { return f.target == target; }))
@@ -134,18 +135,20 @@ void read_signals(const JsonNode& node, LogMap& map) {
                 "the same source for x, y and heading");
 }
 
-void read_mount(const JsonNode& node, LogMap& map) {
-  if (!node.is_object()) {
-    if (node.text() != "estimate") node.fail('"' + shown(node.text()) + '"', "numbers or \"estimate\"");
-    map.estimate_mount = true;
-    return;
-  }
+// x, y [m] and yaw of a frame in the robot's.
+void read_frame(const JsonNode& node, double& x, double& y, double& yaw) {
   csv_import::allow_only(node, {"x", "y", "yaw", "yaw_deg"});
-  if (node.has("x")) map.mount_x = node.at("x").number();
-  if (node.has("y")) map.mount_y = node.at("y").number();
+  if (node.has("x")) x = node.at("x").number();
+  if (node.has("y")) y = node.at("y").number();
   if (node.has("yaw") && node.has("yaw_deg")) node.fail("yaw and yaw_deg", "one of them");
-  if (node.has("yaw")) map.mount_yaw = node.at("yaw").number();
-  if (node.has("yaw_deg")) map.mount_yaw = node.at("yaw_deg").number() * kDegree;
+  if (node.has("yaw")) yaw = node.at("yaw").number();
+  if (node.has("yaw_deg")) yaw = node.at("yaw_deg").number() * kDegree;
+}
+
+void read_mount(const JsonNode& node, LogMap& map) {
+  if (node.is_object()) return read_frame(node, map.mount_x, map.mount_y, map.mount_yaw);
+  if (node.text() != "estimate") node.fail('"' + shown(node.text()) + '"', "numbers or \"estimate\"");
+  map.estimate_mount = true;
 }
 
 void read_drives(const JsonNode& node, LogMap& map) {
@@ -197,10 +200,12 @@ const MappedSource& source_of(const LogMap& map, const std::string& name) {
                        [&](const MappedSource& s) { return s.name == name; });
 }
 
-LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses) {
+LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses,
+                     MapUse use) {
   const JsonNode root = JsonNode::parse(text, file);
-  csv_import::check_map_schema(root, {"schema", "schema_version", "name", "description", "source", "licence",
-                                      "robot", "sources", "signals", "poses", "mount", "drives", "limits"});
+  csv_import::check_map_schema(
+      root, {"schema", "schema_version", "name", "description", "source", "licence", "robot", "sources",
+             "signals", "poses", "mount", "camera_mount", "drives", "limits"});
   LogMap map;
   map.file = file;
   map.name = root.at("name").text();
@@ -214,8 +219,10 @@ LogMap parse_log_map(std::string_view text, const std::string& file, const std::
   if (!poses.empty()) map.poses = poses;
   if (!map.poses.empty()) refuse_with_poses(root, map);
   if (root.has("limits")) read_limits(root.at("limits"), map);
-  read_signals(root.at("signals"), map);
+  read_signals(root.at("signals"), map, use);
   if (root.has("mount")) read_mount(root.at("mount"), map);
+  if (root.has("camera_mount"))
+    read_frame(root.at("camera_mount"), map.camera_x, map.camera_y, map.camera_yaw);
   if (root.has("drives")) read_drives(root.at("drives"), map);
   return map;
 }

@@ -60,6 +60,7 @@ struct LogMap {
   std::vector<MappedField> others;     // gyro.z, accel.x, accel.y, camera.*: optional ones may be missing
   double mount_x = 0, mount_y = 0, mount_yaw = 0;  // of the tracked frame in the robot's; m, rad
   bool estimate_mount = false;
+  double camera_x = 0, camera_y = 0, camera_yaw = 0;  // of the camera in the robot's frame; m, rad
   Split split = Split::None;
   double standstill_s = 3;  // that ends a drive
   std::vector<Mark> marks;
@@ -70,10 +71,14 @@ struct LogMap {
 
 const MappedSource& source_of(const LogMap& map, const std::string& name);
 
+// What a map is read for: a filter needs no reference, and knows nothing of end poses.
+enum class MapUse { Recordings, Filter };
+
 // Throws DataError "file: /place: found ..., expected ..." for broken JSON, unknown keys and names (with the
 // nearest known one), null, wrong units, a robot that read_robot() refuses, sources that do not exist,
 // signals that the robot has not or that are missing. A map without reference has "poses", a file beside it;
 // `poses` goes before that one.
-LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses = {});
+LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses = {},
+                     MapUse use = MapUse::Recordings);
 
 }  // namespace odobench::log_import

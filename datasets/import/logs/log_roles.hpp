@@ -33,6 +33,7 @@ struct Roles {
   std::string kinematics;  // a class of robots, "" where the wheels fit several or none
   std::vector<Role> wheels, steering;
   std::vector<Role> reference;  // x, y, heading, or empty
+  bool drifts = false;          // it is another odometry, visual or of a laser scanner
   std::vector<Role> gyro;       // one or none
   bool by_place = false;        // left and right are guessed from the order of an array or of columns
   std::vector<std::string> reasons;
@@ -40,7 +41,8 @@ struct Roles {
 
 // Wheels: joints of JointState messages, else fields with names of wheels or arrays of two; angles go before
 // counts, counts before speeds, speeds before travel. Reference: poses whose topic names motion capture,
-// other poses, trajectories, columns x, y, yaw; never the robot's own odometry.
+// an odometry whose topic or file names cameras or laser scanners, other poses, trajectories, columns x, y,
+// yaw; never the robot's own odometry.
 Roles find_roles(const std::vector<SurveyedSource>& sources);
 
 }  // namespace odobench::log_import

@@ -17,7 +17,12 @@ struct Pose {
   std::vector<Role> roles;
   int rank = 100;
   std::string why;
+  bool drifts = false;
 };
+
+constexpr const char* kDrifts =
+    ": another odometry, by its name: it drifts, so that segments of the way are to be compared "
+    "(--cost=segments), not whole drives";
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -33,6 +38,14 @@ bool names_any(const std::string& text, std::initializer_list<const char*> words
 bool is_capture(const std::string& name) {
   return names_any(name, {"mocap", "vicon", "optitrack", "qualisys", "vrpn", "natnet", "ground_truth",
                           "groundtruth", "gt", "rigid_body", "motion_capture", "tracker"});
+}
+
+// Odometry that knows nothing of the wheels: its errors grow with the way.
+bool is_other_odometry(const std::string& name) {
+  return names_any(name,
+                   {"visual",     "vio",     "vslam",     "stereo", "orb_slam", "orbslam",      "rtabmap",
+                    "openvins",   "vins",    "realsense", "t265",   "zed",      "lidar_odom",   "laser_odom",
+                    "scan_match", "lio_sam", "fast_lio",  "loam",   "kiss_icp", "cartographer", "slam"});
 }
 
 std::vector<Role> pose_below(std::size_t source, const std::string& place, const std::string& turn) {
@@ -52,6 +65,13 @@ Pose message_pose(const LogSource& source, std::size_t i) {
     return {pose_below(i, "pose.pose.position", "pose.pose.orientation"), 8,
             name + ": a localisation that uses the wheels itself, 5 cm at best: a last choice"};
   const bool capture = is_capture(source.name);
+  if (!capture && is_other_odometry(source.name)) {
+    const std::string place = ends_with_type(source, "PoseStamped") ? "pose" : "pose.pose";
+    if (place == "pose.pose" && !ends_with_type(source, "Odometry") &&
+        !ends_with_type(source, "PoseWithCovarianceStamped"))
+      return {};
+    return {pose_below(i, place + ".position", place + ".orientation"), 3, name + kDrifts, true};
+  }
   const int doubt = capture ? 0 : 4;
   const std::string why = name + (capture ? ": a pose, by its name of motion capture" : ": a pose");
   if (ends_with_type(source, "PoseStamped"))
@@ -132,7 +152,8 @@ Pose array_pose(const LogSource& source, std::size_t i) {
 }
 
 bool own_odometry(const LogSource& source) {
-  return (ends_with_type(source, "Odometry") && !is_capture(source.name)) ||
+  return (ends_with_type(source, "Odometry") && !is_capture(source.name) &&
+          !is_other_odometry(source.name)) ||
          (ends_with_type(source, "TFMessage") &&
           std::any_of(source.fields.begin(), source.fields.end(),
                       [](const LogField& f) { return f.path.find("odom") != std::string::npos; }));
@@ -147,10 +168,18 @@ void find_reference(const std::vector<SurveyedSource>& sources, Roles& roles) {
     if (!source.unreadable.empty()) continue;
     if (own_odometry(source))
       roles.reasons.push_back(shown(source.name) + ": the robot's own odometry is no reference: not offered");
-    for (Pose pose : {message_pose(source, i), named_pose(source, i), array_pose(source, i)})
+    std::vector<Pose> poses{message_pose(source, i), named_pose(source, i), array_pose(source, i)};
+    // A file has no topic: its own name tells.
+    const std::string file = sources[i].file.stem().string();
+    if (source.name.empty() && is_other_odometry(file) && !is_capture(file) && !poses[1].roles.empty()) {
+      poses[1].drifts = true;
+      poses[1].why = shown(file) + kDrifts;
+    }
+    for (Pose& pose : poses)
       if (!pose.roles.empty() && !own_odometry(source) && pose.rank < best.rank) best = std::move(pose);
   }
   roles.reference = best.roles;
+  roles.drifts = best.drifts;
   roles.reasons.push_back("reference: " + (best.roles.empty() ? std::string("none found: null") : best.why));
 }
 

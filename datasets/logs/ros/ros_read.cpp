@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "base/files.hpp"
 #include "base/names.hpp"
 #include "base/text.hpp"
+#include "datasets/logs/log_time.hpp"
 #include "datasets/logs/ros/messages/json_message.hpp"
 #include "datasets/logs/ros/messages/message_path.hpp"
 #include "datasets/logs/ros/messages/message_reader.hpp"
@@ -26,12 +28,14 @@ std::int64_t nanoseconds_of_unit(const std::string& unit, double example) {
   if (unit == "us") return 1'000;
   if (unit == "ms") return 1'000'000;
   if (unit == "s") return 1'000'000'000;
-  if (!unit.empty())
-    throw std::invalid_argument(
-        fmt::format("time_unit '{}': expected s, ms, us or ns for times of messages", shown(unit)));
   // Times since 1970 are 1.7e9 s now.
   const double size = std::abs(example);
   return size > 1e17 ? 1 : size > 1e14 ? 1'000 : size > 1e11 ? 1'000'000 : 1'000'000'000;
+}
+
+// A time that is text, as the unit says: ISO 8601 or a pattern.
+bool is_text(const std::string& unit) {
+  return !unit.empty() && unit != "s" && unit != "ms" && unit != "us" && unit != "ns";
 }
 
 std::int64_t to_nanoseconds(const MessageRow& row, RosPrimitive primitive, std::int64_t unit) {
@@ -61,6 +65,10 @@ class ReadSink : public RosSink {
       s.table.values.resize(requests[i].fields.size());
       s.table.text.resize(requests[i].text.size());
       s.found.assign(requests[i].fields.size(), false);
+      if (!requests[i].time_unit.empty()) {
+        TimeUnit unit(requests[i].time_unit);
+        if (is_text(requests[i].time_unit) && !requests[i].time.empty()) s.text_time = std::move(unit);
+      }
       topics_.insert(requests[i].source);
     }
   }
@@ -75,8 +83,9 @@ class ReadSink : public RosSink {
     const LogRequest* request = nullptr;
     LogTable table;
     std::int64_t messages = 0, without_values = 0, without_stamp = 0, zero_stamp = 0;
-    std::int64_t unit = 0;  // of a time that is a plain number; 0: not yet known
-    bool known = false;     // its source is there
+    std::int64_t unit = 0;              // of a time that is a plain number; 0: not yet known
+    std::optional<TimeUnit> text_time;  // of one that is text, which is then the last text of a row
+    bool known = false;                 // its source is there
     bool json = false;
     std::string type;
     std::vector<bool> found;  // by field
@@ -129,7 +138,11 @@ void ReadSink::add_reader(const RosChannel& channel, std::size_t state, Channel&
   if (s.type.empty()) s.type = short_type_name(channel.type);
   s.json = channel.encoding == RosEncoding::Json;
   std::string unreadable = channel.unreadable;
-  const MessageRequest request{s.request->fields, s.request->text, s.request->time};
+  MessageRequest request{s.request->fields, s.request->text, s.request->time};
+  if (s.text_time) {
+    request.text.push_back(request.time);
+    request.time.clear();
+  }
   try {
     if (unreadable.empty() && channel.encoding == RosEncoding::Json) {
       to.readers.push_back({state, json_reader(request)});
@@ -165,6 +178,13 @@ void ReadSink::message(int channel, std::int64_t log_ns, std::string_view bytes,
 
 std::int64_t ReadSink::time_of(State& s, const MessageRow& row, const RowReader& reader,
                                std::int64_t log_ns) {
+  if (s.text_time) {
+    const std::string_view text = row.text.back();
+    if (const std::optional<std::int64_t> ns = s.text_time->of(text)) return *ns;
+    throw DataError(fmt::format("{}: topic {}: {}: found \"{}\", expected {}",
+                                shown_path(files_->front()->file()), shown(s.request->source),
+                                shown(s.request->time), shown(std::string(text)), s.text_time->text()));
+  }
   if (!row.has_time) {
     ++s.without_stamp;
     return log_ns;
@@ -198,7 +218,7 @@ void ReadSink::append(State& s, const MessageRow& row, const RowReader& reader, 
   s.table.time_ns.push_back(time_of(s, row, reader, log_ns));
   s.table.log_time_ns.push_back(log_ns);
   for (std::size_t i = 0; i < row.numbers.size(); ++i) s.table.values[i].push_back(row.numbers[i]);
-  for (std::size_t i = 0; i < row.text.size(); ++i) s.table.text[i].emplace_back(row.text[i]);
+  for (std::size_t i = 0; i < s.table.text.size(); ++i) s.table.text[i].emplace_back(row.text[i]);
 }
 
 void ReadSink::refuse_unknown_source(const State& s) const {
@@ -286,8 +306,6 @@ std::vector<LogTable> ReadSink::tables(const Stop& stop) {
 
 std::vector<LogTable> read_recording(const RosContainers& files, const std::vector<LogRequest>& requests,
                                      const LogOptions& options, const Stop& stop) {
-  for (const LogRequest& request : requests)
-    if (!request.time_unit.empty()) nanoseconds_of_unit(request.time_unit, 0);
   ReadSink sink(requests, options);
   sink.set_files(files);
   walk_recording(files, sink, options, stop);

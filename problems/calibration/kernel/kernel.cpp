@@ -19,4 +19,18 @@ Kernel select(InstructionSet set) {
   }
 }
 
+ModelKernel select_model(InstructionSet set) {
+  require_available(set);
+  switch (set) {
+#if defined(__x86_64__)
+    case InstructionSet::Avx512:
+      return model_avx512();
+    case InstructionSet::Avx2:
+      return model_avx2();
+#endif
+    default:
+      return model_baseline();
+  }
+}
+
 }  // namespace odobench::kernel

@@ -10,6 +10,9 @@ namespace odobench::kernel {
 Kernel avx2() {
   return make_kernel<4>();
 }
+ModelKernel model_avx2() {
+  return make_model_kernel<4>();
+}
 
 }  // namespace odobench::kernel
 #endif

@@ -10,6 +10,9 @@ namespace odobench::kernel {
 Kernel avx512() {
   return make_kernel<8>();
 }
+ModelKernel model_avx512() {
+  return make_model_kernel<8>();
+}
 
 }  // namespace odobench::kernel
 #endif

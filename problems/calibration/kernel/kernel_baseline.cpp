@@ -6,5 +6,8 @@ namespace odobench::kernel {
 Kernel baseline() {
   return make_kernel<2>();
 }
+ModelKernel model_baseline() {
+  return make_model_kernel<2>();
+}
 
 }  // namespace odobench::kernel

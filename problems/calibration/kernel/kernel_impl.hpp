@@ -5,6 +5,7 @@
 
 #include "problems/calibration/kernel/kernel_rows.hpp"
 #include "problems/calibration/kernel/kernel_streams.hpp"
+#include "problems/calibration/kernel/kernel_wheels.hpp"
 
 namespace odobench::kernel {
 namespace {

@@ -14,6 +14,12 @@
 #include "reports/kinds/calibration/run_figures.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
+#include "reports/kinds/calibration/verdict_table.hpp"
+#include "reports/kinds/optimisers/optimiser_tables.hpp"
+#include "reports/kinds/trust/loss_tables.hpp"
+#include "reports/kinds/trust/noise_tables.hpp"
+#include "reports/kinds/trust/trust_tables.hpp"
+#include "reports/kinds/trust/validation_tables.hpp"
 
 namespace odobench {
 namespace {
@@ -22,14 +28,19 @@ std::string prefix_of(const Comparison& comparison) {
   return comparison.id_prefix.empty() ? "" : vega::slug(comparison.problem + "-" + comparison.dataset) + ".";
 }
 
-// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of
-// 18 mean errors got worse."
-std::string headline(const Comparison& comparison) {
+const ComparisonRow* lowest_row(const Comparison& comparison) {
   const ComparisonRow* best = nullptr;
   for (const ComparisonRow& row : comparison.rows)
     if (row.label != "nominal" && row.shown->cost &&
         (best == nullptr || *row.shown->cost < *best->shown->cost))
       best = &row;
+  return best;
+}
+
+// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of
+// 18 mean errors got worse."
+std::string headline(const Comparison& comparison) {
+  const ComparisonRow* best = lowest_row(comparison);
   if (best == nullptr) return "";
   const ComparisonRow* nominal = comparison.nominal();
   std::string text =
@@ -63,6 +74,9 @@ void summarise(const std::vector<Comparison>& comparisons, Section& summary) {
   for (const Comparison& c : comparisons) {
     const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
                                  [](const ComparisonRow& r) { return r.kind != "evaluation"; });
+    if (const std::optional<Table> verdict = verdict_table(c))
+      for (const std::string& sentence : sentences_of(*verdict))
+        summary.blocks.emplace_back(Paragraph{sentence + c.title_suffix});
     if (const std::string text = headline(c); !text.empty()) summary.blocks.emplace_back(Paragraph{text});
     if (has_costs(c))
       summary.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
@@ -85,8 +99,18 @@ Section errors(const std::vector<Comparison>& comparisons, Document& document) {
       append(error_tables(c), section);
     append(drive_tables(c), section);
     append_if(fit_table(c), section);
+    append(noise_tables(c), section);
+    append_if(weighted_down_table(c), section);
+    append_if(set_aside_table(c), section);
     add_end_figure(c, prefix_of(c), section, document);
   }
+  return section;
+}
+
+Section validation(const std::vector<Comparison>& comparisons) {
+  Section section{
+      "validation", "Validation", "How large the errors are on recordings that the fit has not seen.", {}};
+  for (const Comparison& c : comparisons) append(validation_tables(c), section);
   return section;
 }
 
@@ -109,6 +133,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
     add_parameter_figure(c, prefix_of(c), section, document);
     table->notes.insert(table->notes.end(), notes.begin(), notes.end());
     append_if(std::move(table), section);
+    append(trust_tables(c), section);
   }
   return section;
 }
@@ -117,6 +142,7 @@ void add_calibration_page(const KindInput& input, Section& summary, Document& do
   const std::vector<Comparison> comparisons = compare(input.records);
   summarise(comparisons, summary);
   finish(errors(comparisons, document), document);
+  finish(validation(comparisons), document);
   Section trajectories{"trajectories",
                        "Trajectories",
                        "Where the robot was, and where odometry says it was with each result's parameters.",
@@ -124,6 +150,7 @@ void add_calibration_page(const KindInput& input, Section& summary, Document& do
   for (const PlacedTracks& tracks : input.tracks) add_track_figures(tracks, trajectories, document);
   finish(std::move(trajectories), document);
   finish(convergence(comparisons, document), document);
+  add_optimiser_sections(input.records, document);
   finish(parameters(comparisons, input.notes, document), document);
   Section identifiability{
       "identifiability",
@@ -135,7 +162,9 @@ void add_calibration_page(const KindInput& input, Section& summary, Document& do
 }
 
 std::vector<Table> calibration_tables(const KindInput& input) {
-  return comparison_tables(input.records, input.notes);
+  std::vector<Table> tables = comparison_tables(input.records, input.notes);
+  for (Table& table : optimiser_tables(input.records)) tables.push_back(std::move(table));
+  return tables;
 }
 
 }  // namespace

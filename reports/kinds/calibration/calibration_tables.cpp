@@ -6,6 +6,11 @@
 #include "reports/kinds/calibration/fit_table.hpp"
 #include "reports/kinds/calibration/summary_tables.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
+#include "reports/kinds/calibration/verdict_table.hpp"
+#include "reports/kinds/trust/loss_tables.hpp"
+#include "reports/kinds/trust/noise_tables.hpp"
+#include "reports/kinds/trust/trust_tables.hpp"
+#include "reports/kinds/trust/validation_tables.hpp"
 #include "reports/statistics/row_groups.hpp"
 
 namespace odobench {
@@ -33,12 +38,18 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
                                      const std::vector<std::string>& notes) {
   std::vector<Table> tables;
   for (const Comparison& comparison : compare(records)) {
+    append(tables, verdict_table(comparison));
     for (Table& table : error_tables(comparison)) tables.push_back(std::move(table));
     for (Table& table : drive_tables(comparison)) tables.push_back(std::move(table));
     Table solvers = solver_table(comparison);
     append_parameters(tables, comparison, solvers, notes);
     append(tables, totals_table(comparison));
+    for (Table& table : validation_tables(comparison)) tables.push_back(std::move(table));
     append(tables, fit_table(comparison));
+    for (Table& table : noise_tables(comparison)) tables.push_back(std::move(table));
+    append(tables, weighted_down_table(comparison));
+    append(tables, set_aside_table(comparison));
+    for (Table& table : trust_tables(comparison)) tables.push_back(std::move(table));
     if (has_costs(comparison)) tables.push_back(std::move(solvers));
     append(tables, repeats_table(comparison));
   }

@@ -18,13 +18,18 @@
 namespace odobench {
 
 // Everything, in this order, tables without content left out:
+//   verdict            what the calibration comes to, in sentences (verdict_table.hpp)
 //   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in
 //                      brackets
 //   maxima, drives, ends  in the plane (reports/kinds/calibration/drive_tables.hpp)
 //   parameters         in mm where the unit is m, marked U or L on a bound; lower, nominal and upper rows
 //                      first
 //   totals             sums of e_sr over the trajectories, total, change to nominal absolute and in %
+//   validation, folds, bootstrap  recordings that the fit has not seen
+//                      (reports/kinds/trust/validation_tables.hpp)
 //   fit                how well each drive and all of them fit by the best row (fit_table.hpp)
+//   noise, noise_kinds  the odometry's own noise (reports/kinds/trust/noise_tables.hpp)
+//   determined, intervals, new_drives  how far results can be trusted (reports/kinds/trust/trust_tables.hpp)
 //   solvers            J, J/J_nominal, gap to the best J, evaluations, iterations, time, stop reason, active
 //                      bounds
 //   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best

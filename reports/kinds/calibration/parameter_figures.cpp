@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
@@ -35,19 +36,28 @@ const RunRecord* best_described(const Comparison& comparison) {
   return best;
 }
 
+// Half the 95 % interval of a free parameter, relative; none where the drives do not tell it or where the
+// record says nothing.
+std::optional<double> half_width_of(const RunRecord& record, const ParameterValue& p) {
+  if (!record.trust) return std::nullopt;
+  for (const ParameterIntervalRecord& own : record.trust->parameters)
+    if (own.name == p.name && std::isfinite(own.interval.half_width))
+      return own.interval.half_width / scale_of(p);
+  return std::nullopt;
+}
+
 // Of the plot, %: all bounds and values, and the bars unless they are far wider than the box.
 double plot_edge(const Comparison& comparison) {
   double box = 0, interval = 0;
   for (const ComparisonRow& row : comparison.rows) {
     const std::vector<const ParameterValue*> parameters = free_parameters(*row.shown);
-    const std::vector<double>* sigmas = series_of(*row.shown, "standard_deviations", parameters.size());
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const ParameterValue& p = *parameters[i];
+    for (const ParameterValue* free : parameters) {
+      const ParameterValue& p = *free;
       const double value = std::abs(p.value - p.nominal) / scale_of(p);
       box = std::max({box, std::abs(p.upper - p.nominal) / scale_of(p),
                       std::abs(p.lower - p.nominal) / scale_of(p), value});
-      if (sigmas != nullptr && std::isfinite((*sigmas)[i]))
-        interval = std::max(interval, value + 1.96 * (*sigmas)[i]);
+      if (const std::optional<double> half = half_width_of(*row.shown, p))
+        interval = std::max(interval, value + *half);
     }
   }
   return 100 * std::max(1.1 * box, std::min(1.02 * interval, 5 * box));
@@ -104,13 +114,13 @@ json parameter_spec(const std::string& data, const std::string& caption,
                  {{{"field", "label"}, {"type", "nominal"}},
                   {{"field", "parameter"}, {"type", "nominal"}},
                   {{"field", "value"}, {"type", "quantitative"}, {"title", "deviation [%]"}},
-                  {{"field", "sigma"}, {"type", "quantitative"}, {"title", "standard deviation [%]"}}}}}}};
+                  {{"field", "half_width"}, {"type", "nominal"}, {"title", "95 % interval, +- %"}}}}}}};
   const double height = static_cast<double>(names.size()) * (14.0 + 7.0 * static_cast<double>(labels.size()));
-  return vega::specification(
-      caption, vega::csv_data(data, {"first", "value", "low", "high", "sigma", "lower", "upper"}), {},
-      {{"width", kFigureWidth},
-       {"height", height},
-       {"layer", json::array({bound("lower"), bound("upper"), interval, points})}});
+  return vega::specification(caption,
+                             vega::csv_data(data, {"first", "value", "low", "high", "lower", "upper"}), {},
+                             {{"width", kFigureWidth},
+                              {"height", height},
+                              {"layer", json::array({bound("lower"), bound("upper"), interval, points})}});
 }
 
 }  // namespace
@@ -118,40 +128,34 @@ json parameter_spec(const std::string& data, const std::string& caption,
 void add_parameter_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                           Document& document) {
   std::vector<std::string> names, labels;
-  std::string csv = "label,parameter,first,value,low,high,sigma,lower,upper\n";
+  std::string csv = "label,parameter,first,value,low,high,half_width,lower,upper\n";
   for (const ComparisonRow& row : comparison.rows) {
     const RunRecord& record = *row.shown;
     if (record.parameters.empty() || row.label == "nominal") continue;
     const std::vector<const ParameterValue*> parameters = free_parameters(record);
-    const std::vector<double>* sigmas = series_of(record, "standard_deviations", parameters.size());
     const bool first = labels.empty();
     labels.push_back(row.label);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const ParameterValue& p = *parameters[i];
       if (first) names.push_back(p.name);
       const auto percent = [&](double v) { return 100 * (v - p.nominal) / scale_of(p); };
-      // Without a deviation the interval has no length and is not seen; an infinite one spans the plot.
-      double half = 0;
-      std::string sigma;
-      if (sigmas != nullptr) {
-        half = std::isfinite((*sigmas)[i]) ? 196 * (*sigmas)[i] : 1e6;
-        sigma = std::isfinite((*sigmas)[i]) ? fmt::format("{:.6g}", 100 * (*sigmas)[i]) : "";
-      }
+      // Where there is none the interval has no length and is not seen.
+      const std::optional<double> found = half_width_of(record, p);
+      const double half = 100 * found.value_or(0);
+      const std::string shown = found ? fmt::format("{:.6g}", half) : "none: decided by the box";
       fmt::format_to(std::back_inserter(csv), "{},{},{},{:.9g},{:.6g},{:.6g},{},{:.9g},{:.9g}\n",
                      csv_field(row.label), csv_field(p.name), first ? 1 : 0, percent(p.value),
-                     percent(p.value) - half, percent(p.value) + half, sigma, percent(p.lower),
+                     percent(p.value) - half, percent(p.value) + half, shown, percent(p.lower),
                      percent(p.upper));
     }
   }
   if (names.empty()) return;
   const std::string id = prefix + "parameters";
   const std::string caption =
-      "Deviation from nominal in per cent, with the bounds as grey ticks. Bars: 1.96 deviations of linear "
-      "least-squares theory if residuals were independent, cut at the edge. They are not independent, so "
-      "these "
-      "bars are no intervals for the truth, which are several times wider; a bar beyond the bounds means "
-      "that the "
-      "data hardly determine this parameter.";
+      "Deviation from nominal in per cent, with the bounds as grey ticks. Bars: 95 % intervals from the "
+      "spread "
+      "between recordings; a point without a bar is decided by the box or told by too few recordings (table "
+      "'Single parameters').";
   document.datasets[id] = csv;
   section.blocks.push_back(Figure{id, "Parameters against their bounds" + comparison.title_suffix, caption,
                                   parameter_spec(id, caption, names, labels, plot_edge(comparison))});
@@ -167,7 +171,7 @@ std::optional<Table> weak_directions(const RunRecord& record) {
   Table table{"weak_directions", "Directions of parameter space, best determined first", {}, {}, {}};
   table.columns = {{"rank", "no.", "", "", ""},
                    {"singular_value", "singular value", "", "", ""},
-                   {"deviation", "standard deviation along it", "%", "", ""},
+                   {"deviation", "deviation along it if samples were independent", "%", "", ""},
                    {"determined", "determined", "", "", "", Align::Left},
                    {"direction", "what moves together", "", "", "", Align::Left}};
   for (std::size_t k = 0; k < n; ++k) {
@@ -184,7 +188,7 @@ std::optional<Table> weak_directions(const RunRecord& record) {
   }
   table.notes.push_back(
       fmt::format("Singular values of the Jacobian in relative parameters at the result of {}. Determined: "
-                  "the standard deviation is "
+                  "the deviation is "
                   "smaller than what the box allows along the direction. Numbers in brackets: the parts of "
                   "the unit vector.",
                   record.label));

@@ -21,9 +21,8 @@ void add_convergence_figures(const Comparison& comparison, const std::string& pr
 void add_repeat_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                        Document& document);
 
-// Parameters as deviation from nominal in % with the box, and bars of +-1.96 deviations of linear
-// least-squares theory as they would be if residuals were independent, where the record has them (cut at the
-// plot's edge). Nothing without parameters.
+// Parameters as deviation from nominal in % with the box, and their 95 % intervals as bars where the
+// record has some (cut at the plot's edge). Nothing without parameters.
 void add_parameter_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                           Document& document);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace odobench {
 namespace {
@@ -91,6 +92,12 @@ std::optional<Table> noise_table(const RunRecord& record) {
                    {"factor", "factor", "", "", "after"},
                    {"zero", "zero increments", "", "", "zero"},
                    {"zero_factor", "factor", "", "", "zero"}};
+  const bool compared = figure(record, "cpu.kalman").has_value();
+  if (compared)
+    for (const auto& [id, name] : {std::pair{"kalman", "Kalman filter"}, {"smoother", "Kalman smoother"}}) {
+      table.columns.push_back({id, name, "", "", id});
+      table.columns.push_back({std::string(id) + "_factor", "factor", "", "", id});
+    }
   for (const NoiseChannel& channel : kNoiseChannels)
     for (const std::string measure : kNoiseMeasures) {
       const std::string name = fmt::format("noise.{}.{}.", channel.id, measure);
@@ -103,12 +110,30 @@ std::optional<Table> noise_table(const RunRecord& record) {
       table.rows.push_back({text_cell(channel.name), text_cell(shown), figure_cell(before, 4),
                             figure_cell(after, 4), factor_cell(before, after), figure_cell(zero, 4),
                             factor_cell(before, zero)});
+      if (!compared) continue;
+      for (const char* stage : kComparedStages) {
+        const auto value = figure(record, name + stage);
+        table.rows.back().push_back(figure_cell(value, 4));
+        table.rows.back().push_back(factor_cell(before, value));
+      }
     }
   if (table.rows.empty()) return std::nullopt;
+  if (compared) {
+    const auto cpu = [&](const char* stage) {
+      return figure_cell(figure(record, std::string("cpu.") + stage), 3);
+    };
+    table.rows.push_back({text_cell("all"), text_cell("processor time [us/sample]"), Cell{}, cpu("after"),
+                          Cell{}, Cell{}, Cell{}, cpu("kalman"), Cell{}, cpu("smoother"), Cell{}});
+  }
   table.notes = {
       "Zero increments: the same filter without any search, the control.",
       "Encoders, x and y: components of all wheels in the filter's frame. ax, ay after the filter: "
       "ax12, ay12 against the mean of the two true samples they lie between."};
+  if (compared)
+    table.notes.push_back(
+        "Kalman: the linear model of a window with the same deviations, increments white with sqrt(2/3) of "
+        "their size. The filter says a sample when it comes, the smoother as many samples late as the "
+        "relative-entropy filter.");
   return table;
 }
 
@@ -121,12 +146,16 @@ std::optional<Table> track_table(const RunRecord& record) {
   table.columns = {{"from", "from", "", "", "", Align::Left},
                    best_if(Better::Lower, {"end", "at the end", "m", "", ""}),
                    best_if(Better::Lower, {"max", "at most", "m", "", ""})};
-  const std::array<const char*, 3> names{"measurements", "filter", "zero increments"};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto end = figure(record, std::string("track.end.") + kNoiseStages[i]);
+  const std::array<std::pair<const char*, const char*>, 5> stages{{{kNoiseStages[0], "measurements"},
+                                                                   {kNoiseStages[1], "filter"},
+                                                                   {kNoiseStages[2], "zero increments"},
+                                                                   {kComparedStages[0], "Kalman filter"},
+                                                                   {kComparedStages[1], "Kalman smoother"}}};
+  for (const auto& [stage, name] : stages) {
+    const auto end = figure(record, std::string("track.end.") + stage);
     if (!end) continue;
-    table.rows.push_back({text_cell(names[i]), significant_cell(*end, 4),
-                          figure_cell(figure(record, std::string("track.max.") + kNoiseStages[i]), 4)});
+    table.rows.push_back({text_cell(name), significant_cell(*end, 4),
+                          figure_cell(figure(record, std::string("track.max.") + stage), 4)});
   }
   if (table.rows.empty()) return std::nullopt;
   return table;

@@ -10,6 +10,7 @@
 //                                  | max, STAGE before | after | zero (after the filter without increments);
 //                                  of CHANNEL, in its unit
 //   track.end.STAGE, track.max.STAGE   m, distance of the dead-reckoned from the true position
+//   cpu.STAGE                      us per sample; STAGE after | kalman | smoother; where compared
 // and these series (see also kSignals and gap_bin_name):
 //   signal.width                          rows per bucket
 //   signal.SIGNAL.STAGE.min, .max         of every bucket; STAGE before | after | truth
@@ -41,6 +42,9 @@ inline constexpr std::array<NoiseChannel, 5> kNoiseChannels{{{"encoder_component
                                                              {"theta", "rotation", "deg"}}};
 inline constexpr std::array<const char*, 3> kNoiseMeasures{"rms", "ratio", "max"};
 inline constexpr std::array<const char*, 3> kNoiseStages{"before", "after", "zero"};
+// With --compare=kalman two more: the linear filter, which is not late, and the linear smoother, as late as
+// the relative-entropy filter.
+inline constexpr std::array<const char*, 2> kComparedStages{"kalman", "smoother"};
 
 // Signals of the figures: mean displacement of the wheels per sample, accelerations, rotation per sample.
 inline constexpr std::array<NoiseChannel, 4> kSignals{

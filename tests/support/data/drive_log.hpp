@@ -22,6 +22,9 @@ struct DriveLog {
   int bits = 0;                           // of the counters: 0, they never run over
   int left_sign = 1;                      // -1: counts backwards
   double begin_s = 1.7e9;                 // of the wheels' clock
+  // Of a reference that is another odometry: its heading's walk [rad per square root of a metre], its place.
+  double drift = 0, mount_x = 0, mount_y = 0;
+  unsigned drift_seed = 1;
 
   static constexpr double kLeft = 0.0504, kRight = 0.04985, kTrack = 0.412;
 
@@ -57,6 +60,25 @@ struct DriveLog {
     return all;
   }
 
+  // The same motion step by step, each turned by what has drifted, from a frame of its own.
+  std::vector<State> drifted(const std::vector<State>& truth) const {
+    std::vector<State> all;
+    double x = 7, y = -2, off = 1.9;
+    std::mt19937 random(drift_seed);
+    std::normal_distribution<double> walk(0, drift);
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      if (k > 0) {
+        const double dx = truth[k].x - truth[k - 1].x, dy = truth[k].y - truth[k - 1].y;
+        if (drift > 0) off += std::sqrt(std::hypot(dx, dy)) * walk(random);
+        x += std::cos(off) * dx - std::sin(off) * dy;
+        y += std::sin(off) * dx + std::cos(off) * dy;
+      }
+      const double theta = truth[k].theta + off, c = std::cos(theta), s = std::sin(theta);
+      all.push_back({x + c * mount_x - s * mount_y, y + s * mount_x + c * mount_y, theta, 0, 0});
+    }
+    return all;
+  }
+
   std::string wheels() const {
     std::string csv = "stamp_ns,left_ticks,right_ticks\n";
     const std::vector<State> all = states();
@@ -77,7 +99,8 @@ struct DriveLog {
     std::mt19937 random(7);
     std::normal_distribution<double> noise(0, 1);
     std::string csv = "time [s],x [mm],y [mm],yaw [deg]\n";
-    const std::vector<State> all = states();
+    std::vector<State> all = states();
+    if (drift != 0 || mount_x != 0 || mount_y != 0) all = drifted(all);
     for (std::size_t k = 5; k < all.size(); k += 10) {
       const double t = static_cast<double>(k) * 1e-3;
       if (t > gap_from_s && t < gap_to_s) continue;

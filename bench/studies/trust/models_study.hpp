@@ -1,0 +1,34 @@
+// Models of a robot compared by recordings that they were not fitted to: the study behind `bench models`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/stop.hpp"
+#include "bench/catalogue/problem_factory.hpp"
+#include "bench/studies/watcher.hpp"
+#include "reports/records/record.hpp"
+
+namespace odobench {
+
+struct ModelsStudy {
+  std::string data;  // path of set.json; empty: the demo set
+  CalibrationChoice calibration;
+  // Names that are combined by '+' ("least_squares+contact_offset"); none: those that suit the robot.
+  std::vector<std::string> models;
+  std::optional<InstructionSet> kernel;
+  int threads = 0;  // 0: one per core; results do not depend on it
+};
+
+// Model lists that suit the robot and its recordings, the plain one ("") first: twists, contacts, zeros, the
+// tracked frame, free starts, the lag that cross-correlation measures (`lag`, s; 0: none) held, one factor
+// on drives that turn on the spot. Those that the robot has nothing for are left out.
+std::vector<std::string> suitable_models(const CalibrationProblem& plain, const Robot& robot, double lag);
+
+// Records of reports/kinds/trust/models_tables.hpp, "nominal" first. Every model is fitted by `lm` from its
+// nominal parameters; those whose offsets or zeros are free one by one also from the optimum of their shared
+// offset and from three points of the box; every fold from all of their optima. Throws std::invalid_argument
+// on a model that is none or that the robot does not allow, DataError on a bad set, Interruption.
+std::vector<RunRecord> compare_models(const ModelsStudy& study, Watcher& watcher, const Stop& stop);
+
+}  // namespace odobench

@@ -1,0 +1,64 @@
+#include "bench/studies/trust_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "problems/trust/trust.hpp"
+
+namespace odobench {
+namespace {
+
+IntervalRecord interval_record(const Interval& i) {
+  IntervalRecord record;
+  record.deviation = i.deviation;
+  record.df = i.df;
+  record.half_width = i.half_width;
+  record.same_deviation = i.same_deviation;
+  record.same_df = i.same_df;
+  record.same_half_width = i.same_half_width;
+  record.refused = name_of(i.refused);
+  record.reason = i.reason;
+  return record;
+}
+
+TrustRecord trust_record(const Trust& trust) {
+  TrustRecord record;
+  record.recordings = static_cast<int>(trust.recordings);
+  record.kinds = static_cast<int>(trust.kinds);
+  record.exact_hessian = trust.exact_hessian;
+  if (trust.kind_test.possible) {
+    record.kind_f = trust.kind_test.f;
+    record.kind_p = trust.kind_test.p;
+    record.systematic = trust.kind_test.systematic;
+  }
+  for (const DeterminedNumber& d : trust.determined)
+    record.determined.push_back({d.number.name, d.number.words, d.number.unit, d.number.nominal,
+                                 d.number.value, interval_record(d.interval)});
+  for (const ParameterInterval& p : trust.parameters)
+    record.parameters.push_back({p.name, p.unit, p.value, interval_record(p.interval)});
+  for (const DriveError& d : trust.drives)
+    record.drives.push_back({d.drive, d.what, d.unit, d.scatter, interval_record(d.interval)});
+  record.remarks = trust.map_remarks;
+  record.sentences = trust.sentences;
+  return record;
+}
+
+}  // namespace
+
+void describe_trust(const LoadedProblem& loaded, const Vector& x, RunRecord& record) {
+  if (!loaded.apart) return;
+  const auto give_up = [&](const std::exception& error) {
+    record.notes.push_back(fmt::format("{}: nothing is said about trust: {}", record.label, error.what()));
+  };
+  try {
+    record.trust = trust_record(assess_trust(*loaded.apart->get(), loaded.apart->robot(), x));
+  } catch (const DataError& error) {
+    give_up(error);
+  } catch (const std::invalid_argument& error) {
+    give_up(error);
+  }
+}
+
+}  // namespace odobench

@@ -1,0 +1,67 @@
+#include "problems/trust/recording_scores.hpp"
+
+#include <algorithm>
+
+#include "problems/information/combinations.hpp"
+
+namespace odobench {
+
+using Eigen::Index;
+
+Matrix RecordingScores::information() const {
+  const auto n = static_cast<Index>(parameters.size());
+  Matrix sum = Matrix::Zero(n, n);
+  for (const Matrix& one : h) sum += one;
+  return sum;
+}
+
+RecordingScores recording_scores(const RecordingCosts& costs, const ConstVectorRef& z) {
+  RecordingScores scores;
+  const std::vector<ParameterInfo>& parameters = costs.parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].lower < parameters[i].upper) scores.parameters.push_back(static_cast<Index>(i));
+  scores.scale = relative_scales(parameters)(scores.parameters);
+  scores.costs = Vector::Zero(static_cast<Index>(costs.size()));
+  NormalEquations e;
+  for (std::size_t n = 0; n < costs.size(); ++n) {
+    costs[n].normal_equations(z, e);
+    scores.recordings.push_back(costs.recording(n).id);
+    scores.kinds.push_back(costs.recording(n).trajectory);
+    scores.costs[static_cast<Index>(n)] = e.cost;
+    scores.g.push_back(scores.scale.cwiseProduct(Vector(e.jtr(scores.parameters))));
+    scores.h.push_back(scores.scale.asDiagonal() * Matrix(e.jtj(scores.parameters, scores.parameters)) *
+                       scores.scale.asDiagonal());
+    scores.residuals += costs[n].residual_count();
+    scores.rounding_floor += costs[n].rounding_floor(z);
+  }
+  return scores;
+}
+
+RecordingScores restricted(const RecordingScores& scores, const std::vector<Index>& places) {
+  RecordingScores fewer = scores;
+  fewer.parameters.clear();
+  for (const Index at : places) fewer.parameters.push_back(scores.parameters[static_cast<std::size_t>(at)]);
+  fewer.scale = scores.scale(places);
+  for (std::size_t n = 0; n < scores.size(); ++n) {
+    fewer.g[n] = scores.g[n](places);
+    fewer.h[n] = scores.h[n](places, places);
+  }
+  return fewer;
+}
+
+KindsOfDrives kinds_of(const std::vector<std::string>& kinds) {
+  KindsOfDrives all;
+  for (const std::string& kind : kinds) {
+    const auto at =
+        static_cast<std::size_t>(std::find(all.names.begin(), all.names.end(), kind) - all.names.begin());
+    if (at == all.names.size()) {
+      all.names.push_back(kind);
+      all.counts.push_back(0);
+    }
+    all.of.push_back(at);
+    ++all.counts[at];
+  }
+  return all;
+}
+
+}  // namespace odobench

@@ -1,0 +1,264 @@
+#include "problems/trust/trust.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "base/angle.hpp"
+#include "problems/calibration/drive_errors.hpp"
+
+namespace odobench {
+
+using Eigen::Index;
+
+namespace {
+
+constexpr double kAtBound = 1e-6;       // of the width of a box
+constexpr double kStraight = 10;        // m
+constexpr double kPoseStep = 1e-6;      // relative
+constexpr std::size_t kManyKinds = 12;  // from which intervals may be taken between kinds
+
+bool on_bound(const ParameterInfo& p, double value) {
+  const double near = kAtBound * (p.upper - p.lower);
+  return p.lower < p.upper && (value <= p.lower + near || value >= p.upper - near);
+}
+
+// Everything that several parts of the result are made of.
+struct Setting {
+  const RecordingCosts& costs;
+  Vector z;
+  RecordingScores scores;          // of all parameters whose bounds differ
+  std::vector<Index> free_places;  // among them, those on no bound
+  RecordingScores free;
+
+  // c in q of the free parameters, from a gradient by z.
+  Vector by_free(const Vector& gradient) const {
+    return free.scale.cwiseProduct(Vector(gradient(free.parameters)));
+  }
+};
+
+Vector half_gradient(const RecordingCosts& costs, const Vector& z) {
+  Vector sum = Vector::Zero(z.size());
+  NormalEquations e;
+  for (std::size_t n = 0; n < costs.size(); ++n) {
+    costs[n].normal_equations(z, e);
+    sum += e.jtr;
+  }
+  return sum;
+}
+
+Setting prepare(const RecordingCosts& costs, const ConstVectorRef& z, Trust& trust) {
+  Setting s{costs, z, recording_scores(costs, z), {}, {}};
+  for (Index k = 0; k < static_cast<Index>(s.scores.parameters.size()); ++k) {
+    const Index at = s.scores.parameters[static_cast<std::size_t>(k)];
+    const ParameterInfo& p = costs.parameters()[static_cast<std::size_t>(at)];
+    if (on_bound(p, z[at]))
+      trust.active.push_back(p.name);
+    else
+      s.free_places.push_back(k);
+  }
+  s.free = restricted(s.scores, s.free_places);
+  trust.recordings = s.scores.size();
+  trust.kinds = kinds_of(s.scores.kinds).names.size();
+  trust.free = s.free_places.size();
+  return s;
+}
+
+std::vector<ParameterInterval> parameter_intervals(const Setting& s, const RecordingCovariances& covariances,
+                                                   const std::vector<std::string>& active) {
+  std::vector<ParameterInterval> list;
+  for (Index k = 0; k < static_cast<Index>(s.scores.parameters.size()); ++k) {
+    const Index at = s.scores.parameters[static_cast<std::size_t>(k)];
+    const ParameterInfo& p = s.costs.parameters()[static_cast<std::size_t>(at)];
+    ParameterInterval one{p.name, p.unit, s.z[at], (p.upper - p.lower) / 2, {}};
+    const double scale = s.scores.scale[k];
+    one.interval = jackknife_interval(s.scores, covariances, Vector::Unit(s.scores.scale.size(), k));
+    Interval& found = one.interval;
+    found.deviation *= scale;
+    found.half_width *= scale;
+    const double wide = found.half_width;
+    if (!active.empty() && found.refused != NoInterval::TooFewRecordings &&
+        found.refused != NoInterval::OneRecording) {
+      found.refused = NoInterval::BoundActive;
+      found.reason = "decided by the box: a bound is active";
+    } else if (found.refused == NoInterval::Undetermined) {
+      found.reason = "decided by the box: these drives cannot tell it";
+    } else if (found.refused == NoInterval::None && wide > one.box_half_width) {
+      found.refused = NoInterval::WiderThanBox;
+      found.reason = fmt::format("decided by the box: the drives leave +- {:.3g} %, the box +- {:.3g} %",
+                                 100 * wide / scale, 100 * one.box_half_width / scale);
+    }
+    if (found.refused != NoInterval::None) found.half_width = std::numeric_limits<double>::quiet_NaN();
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+// Errors of driving 10 m and of a full turn: combinations of the numbers of the map.
+void add_basic_drives(const Setting& s, const LeaveOneOut& moves, Trust& trust) {
+  const auto gradient = [&](const std::string& name) {
+    for (const DeterminedNumber& d : trust.determined)
+      if (d.number.name == name) return d.number.gradient;
+    return Vector(Vector::Zero(s.z.size()));
+  };
+  const auto add = [&](const std::string& drive, const char* what, const char* unit, const Vector& by_z) {
+    if (by_z.isZero(0)) return;
+    trust.drives.push_back({drive, what, unit, 0, moves.interval(s.by_free(by_z))});
+  };
+  // Along x by m11, aside by m21 and by the heading that grows with m31; the same along y.
+  const double lever = kStraight * kStraight / 2;
+  add("10 m along x", "along", "m", kStraight * gradient("m11"));
+  add("10 m along x", "aside", "m", kStraight * gradient("m21") + lever * gradient("m31"));
+  add("10 m along x", "heading", "rad", kStraight * gradient("m31"));
+  add("10 m along y", "aside", "m", kStraight * gradient("m12") - lever * gradient("m32"));
+  add("10 m along y", "heading", "rad", kStraight * gradient("m32"));
+  add("full turn", "heading", "rad", 2 * kPi * gradient("m33"));
+  add("full circle to the left", "heading", "rad", 2 * kPi * gradient("left_turn"));
+  add("full circle to the right", "heading", "rad", 2 * kPi * gradient("right_turn"));
+}
+
+Eigen::Vector3d end_of(const PoseTrack& track) {
+  return {track.x.back(), track.y.back(), track.theta.back()};
+}
+
+// Of a structured problem the last three residuals.
+Eigen::Vector3d end_error(const Setting& s, std::size_t recording) {
+  const CalibrationProblem& problem = s.costs[recording];
+  if (!problem.structured()) return drive_errors(s.costs.recording(recording), problem.integrate(0, s.z)).end;
+  Vector r(problem.residual_count());
+  problem.residuals(s.z, r);
+  return r.tail<3>();
+}
+
+// Gradients by z of the end pose of a recording (rows x, y, theta), of the parameters on no bound.
+Matrix end_gradients(const Setting& s, std::size_t recording) {
+  const CalibrationProblem& problem = s.costs[recording];
+  Matrix all = Matrix::Zero(3, s.z.size());
+  if (problem.structured()) {
+    Vector r(problem.residual_count());
+    Matrix j(problem.residual_count(), s.z.size());
+    problem.residuals_and_jacobian(s.z, r, j);
+    return j.bottomRows(3);
+  }
+  for (std::size_t k = 0; k < s.free.parameters.size(); ++k) {
+    const Index at = s.free.parameters[k];
+    const double step = kPoseStep * s.free.scale[static_cast<Index>(k)];
+    Vector up = s.z, down = s.z;
+    up[at] += step;
+    down[at] -= step;
+    all.col(at) = (end_of(problem.integrate(0, up)) - end_of(problem.integrate(0, down))) / (2 * step);
+  }
+  return all;
+}
+
+// Of each kind: the end pose of its first recording, and the scatter of all of them.
+void add_kinds(const Setting& s, const LeaveOneOut& moves, Trust& trust) {
+  const KindsOfDrives kinds = kinds_of(s.scores.kinds);
+  Matrix squares = Matrix::Zero(3, static_cast<Index>(kinds.names.size()));
+  for (std::size_t n = 0; n < s.costs.size(); ++n)
+    squares.col(static_cast<Index>(kinds.of[n])) +=
+        end_error(s, n).cwiseAbs2() / static_cast<double>(kinds.counts[kinds.of[n]]);
+  for (std::size_t kind = 0; kind < kinds.names.size(); ++kind) {
+    const auto first =
+        static_cast<std::size_t>(std::find(kinds.of.begin(), kinds.of.end(), kind) - kinds.of.begin());
+    const Matrix gradients = end_gradients(s, first);
+    constexpr const char* kWhat[] = {"x", "y", "heading"};
+    for (Index row = 0; row < 3; ++row) {
+      const double scatter = std::sqrt(squares(row, static_cast<Index>(kind)));
+      trust.drives.push_back({kinds.names[kind], kWhat[row], row < 2 ? "m" : "rad", scatter,
+                              moves.interval(s.by_free(Vector(gradients.row(row).transpose())), scatter)});
+    }
+  }
+}
+
+Interval decided_by_the_box() {
+  Interval none;
+  none.refused = NoInterval::BoundActive;
+  none.reason = "decided by the box: what moves it lies on bounds";
+  return none;
+}
+
+std::string kind_sentence(const Trust& trust) {
+  if (!trust.kind_test.possible || !trust.kind_test.systematic) return "";
+  return fmt::format(
+      "Errors repeat within each kind of drive (F = {:.3g}, p = {:.1g}): what stands for the same drives "
+      "says how "
+      "well the result repeats, not how near it is to the truth{}.",
+      trust.kind_test.f, trust.kind_test.p,
+      trust.kinds < kManyKinds ? "; more kinds of drive would tell" : "");
+}
+
+void add_sentences(const Interval& general, Trust& trust) {
+  std::vector<std::string>& all = trust.sentences;
+  if (general.refused != NoInterval::None) {
+    all.push_back("No intervals: " + general.reason + ".");
+    return;
+  }
+  std::vector<std::string> told;
+  for (const DeterminedNumber& d : trust.determined)
+    if (d.interval.refused == NoInterval::None) told.push_back(words_with(d.number, d.interval.half_width));
+  if (!told.empty()) all.push_back(fmt::format("The drives determine: {}.", fmt::join(told, ", ")));
+  if (!trust.active.empty())
+    all.push_back(
+        fmt::format("{} of {} parameters lie on their bounds ({}): the result is the best in the box, and no "
+                    "single parameter "
+                    "is a measurement.",
+                    trust.active.size(), trust.parameters.size(), fmt::join(trust.active, ", ")));
+  std::vector<std::string> wide;
+  for (const ParameterInterval& p : trust.parameters)
+    if (p.interval.refused == NoInterval::WiderThanBox) wide.push_back(p.name);
+  if (!wide.empty())
+    all.push_back(fmt::format("{}: decided by {} bounds, not by the drives.", fmt::join(wide, ", "),
+                              wide.size() == 1 ? "its" : "their"));
+  if (const std::string kinds = kind_sentence(trust); !kinds.empty()) all.push_back(kinds);
+  if (trust.kinds == trust.recordings)
+    all.emplace_back("No drive was repeated: the intervals cannot separate noise from errors of the model.");
+  all.emplace_back(kWhatIntervalsHold);
+}
+
+}  // namespace
+
+Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstVectorRef& z,
+                   const TrustOptions& options) {
+  if (z.size() != static_cast<Index>(costs.parameters().size()))
+    throw std::invalid_argument(
+        fmt::format("trust: {} parameters, expected {}", z.size(), costs.parameters().size()));
+  Trust trust;
+  const Setting s = prepare(costs, z, trust);
+  TwistMap map = twist_map(robot, costs.parameters(), z);
+  trust.map_linear = map.linear;
+  trust.map_remarks = std::move(map.remarks);
+  if (s.scores.parameters.empty()) return trust;
+  const Interval general = general_refusal(s.scores);
+  const RecordingCovariances covariances(s.scores.g, s.scores.h);
+  trust.leverages = covariances.leverages();
+  trust.parameters = parameter_intervals(s, covariances, trust.active);
+  for (TwistNumber& number : map.numbers) trust.determined.push_back({std::move(number), general});
+  if (general.refused == NoInterval::None) {
+    trust.kind_test = kind_test(s.scores.g, s.scores.h, s.scores.kinds);
+    if (trust.free == 0) {
+      for (DeterminedNumber& d : trust.determined) d.interval = decided_by_the_box();
+    } else {
+      Matrix exact;
+      if (options.exact_hessian)
+        exact = exact_half_hessian([&](const Vector& at) { return half_gradient(costs, at); }, s.free, z);
+      const LeaveOneOut moves(s.free, exact);
+      trust.exact_hessian = moves.uses_exact();
+      trust.hessian_eigenvalues = moves.eigenvalues();
+      for (DeterminedNumber& d : trust.determined) {
+        const Vector c = s.by_free(d.number.gradient);
+        d.interval = c.isZero(0) ? decided_by_the_box() : moves.interval(c);
+      }
+      add_basic_drives(s, moves, trust);
+      if (options.drives) add_kinds(s, moves, trust);
+    }
+  }
+  add_sentences(general, trust);
+  return trust;
+}
+
+}  // namespace odobench

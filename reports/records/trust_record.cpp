@@ -1,0 +1,113 @@
+#include "reports/records/trust_record.hpp"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/json_node.hpp"
+
+namespace odobench {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+// The fields of an interval stand beside those of what it is of.
+json with_interval(json out, const IntervalRecord& i) {
+  const std::pair<const char*, double> numbers[] = {
+      {"sd", i.deviation},           {"df", i.df},           {"half_width", i.half_width},
+      {"same_sd", i.same_deviation}, {"same_df", i.same_df}, {"same_half_width", i.same_half_width}};
+  for (const auto& [name, value] : numbers) out[name] = finite_or_null(value);
+  if (i.refused != "none") out["refused"] = i.refused;
+  if (!i.reason.empty()) out["reason"] = i.reason;
+  return out;
+}
+
+IntervalRecord interval_from(const JsonNode& node) {
+  IntervalRecord i;
+  i.deviation = node.at("sd").stored_number();
+  i.df = node.at("df").stored_number();
+  i.half_width = node.at("half_width").stored_number();
+  i.same_deviation = node.at("same_sd").stored_number();
+  i.same_df = node.at("same_df").stored_number();
+  i.same_half_width = node.at("same_half_width").stored_number();
+  if (const auto refused = node.find("refused")) i.refused = refused->text();
+  i.reason = node.text_or_empty("reason");
+  return i;
+}
+
+json list_of(const std::vector<std::string>& texts) {
+  return texts;
+}
+
+std::vector<std::string> texts_from(const JsonNode& node) {
+  std::vector<std::string> texts;
+  for (const JsonNode& one : node.elements()) texts.push_back(one.text());
+  return texts;
+}
+
+}  // namespace
+
+IntervalRecord::IntervalRecord()
+    : deviation(kNotGiven),
+      df(kNotGiven),
+      half_width(kNotGiven),
+      same_deviation(kNotGiven),
+      same_df(kNotGiven),
+      same_half_width(kNotGiven) {}
+
+TrustRecord::TrustRecord() : kind_f(kNotGiven), kind_p(kNotGiven) {}
+
+json to_json(const TrustRecord& trust) {
+  json out{{"recordings", trust.recordings},
+           {"kinds", trust.kinds},
+           {"exact_hessian", trust.exact_hessian},
+           {"kind_f", finite_or_null(trust.kind_f)},
+           {"kind_p", finite_or_null(trust.kind_p)},
+           {"systematic", trust.systematic},
+           {"determined", json::array()},
+           {"parameters", json::array()},
+           {"drives", json::array()},
+           {"remarks", list_of(trust.remarks)},
+           {"sentences", list_of(trust.sentences)}};
+  for (const DeterminedRecord& d : trust.determined)
+    out["determined"].push_back(with_interval({{"name", d.name},
+                                               {"words", d.words},
+                                               {"unit", d.unit},
+                                               {"nominal", finite_or_null(d.nominal)},
+                                               {"value", finite_or_null(d.value)}},
+                                              d.interval));
+  for (const ParameterIntervalRecord& p : trust.parameters)
+    out["parameters"].push_back(
+        with_interval({{"name", p.name}, {"unit", p.unit}, {"value", finite_or_null(p.value)}}, p.interval));
+  for (const DriveErrorRecord& d : trust.drives)
+    out["drives"].push_back(with_interval(
+        {{"drive", d.drive}, {"what", d.what}, {"unit", d.unit}, {"scatter", finite_or_null(d.scatter)}},
+        d.interval));
+  return out;
+}
+
+TrustRecord trust_from(const JsonNode& node) {
+  TrustRecord trust;
+  trust.recordings = node.at("recordings").small_integer();
+  trust.kinds = node.at("kinds").small_integer();
+  trust.exact_hessian = node.at("exact_hessian").boolean();
+  trust.kind_f = node.at("kind_f").stored_number();
+  trust.kind_p = node.at("kind_p").stored_number();
+  trust.systematic = node.at("systematic").boolean();
+  for (const JsonNode& d : node.at("determined").elements())
+    trust.determined.push_back({d.at("name").text(), d.at("words").text(), d.at("unit").text(),
+                                d.at("nominal").stored_number(), d.at("value").stored_number(),
+                                interval_from(d)});
+  for (const JsonNode& p : node.at("parameters").elements())
+    trust.parameters.push_back(
+        {p.at("name").text(), p.at("unit").text(), p.at("value").stored_number(), interval_from(p)});
+  for (const JsonNode& d : node.at("drives").elements())
+    trust.drives.push_back({d.at("drive").text(), d.at("what").text(), d.at("unit").text(),
+                            d.at("scatter").stored_number(), interval_from(d)});
+  trust.remarks = texts_from(node.at("remarks"));
+  trust.sentences = texts_from(node.at("sentences"));
+  return trust;
+}
+
+}  // namespace odobench
