@@ -54,5 +54,8 @@ void warn(const std::string& text) {
 void note(const std::string& text) {
   line("", text);
 }
+void hint(const std::string& text) {
+  if (::isatty(STDERR_FILENO) == 1) note(text);
+}
 
 }  // namespace odobench

@@ -22,5 +22,7 @@ void write_result(const std::string& path, std::string_view bytes, Existing exis
 // One line on standard error: "bench: warning: ...", escaped and of bounded length (one_line_message).
 void warn(const std::string& text);
 void note(const std::string& text);
+// note() for people alone: nothing where standard error is no terminal.
+void hint(const std::string& text);
 
 }  // namespace odobench

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 
 #include "bench/catalogue/option_values.hpp"
@@ -11,6 +10,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/table_options.hpp"
 #include "bench/options/trust_options.hpp"
 #include "bench/studies/importing/calibrate_study.hpp"
 #include "bench/studies/records.hpp"
@@ -35,6 +35,7 @@ struct CalibrateOptions {
   double per_turn = 0;
   bool keep_cut = false, overwrite = false, quiet = false;
   std::string format = "console";
+  std::vector<std::string> tables;
 };
 
 void add_options(CLI::App& app, CalibrateOptions& o) {
@@ -70,6 +71,7 @@ void add_options(CLI::App& app, CalibrateOptions& o) {
   app.add_flag("--overwrite", o.overwrite, "replace what is there");
   app.add_flag("--quiet", o.quiet, "no remarks on standard error, only warnings and errors");
   add_format(app, o.format);
+  add_tables(app, o.tables, TablesByDefault::Key);
   app.footer(kCalibrateExamples);
 }
 
@@ -100,18 +102,15 @@ ExitCode calibrate_command(const CalibrateOptions& options, const Catalogue& cat
   TerminalWatcher watcher(options.quiet);
   const Calibrated done = calibrate_logs(study_of(options), catalogue, watcher, InterruptGuard::stop());
   std::vector<Table> tables = comparison_tables(done.records, notes_of_best(done.records));
-  static const std::set<std::string> shown_here = {"verdict",   "parameters", "totals",     "determined",
-                                                   "intervals", "new_drives", "validation", "folds",
-                                                   "fit",       "noise",      "noise_kinds"};
-  std::erase_if(tables, [](const Table& table) { return !shown_here.contains(table.id); });
-  print_tables(tables, format);
+  const ExitCode printed =
+      print_chosen(std::move(tables), options.tables, format, TablesByDefault::Key, options.quiet);
   for (const std::filesystem::path& file : done.files) note(file.string());
   note(fmt::format(
       "next: bench report {0} shows all tables; bench export {0} --to=ros2 writes a controller's parameters",
       done.results.string()));
   const bool any = std::any_of(done.records.begin(), done.records.end(),
                                [](const RunRecord& r) { return r.kind == "run" && r.cost; });
-  return any ? ExitCode::Success : ExitCode::CheckFailed;
+  return any ? printed : ExitCode::CheckFailed;
 }
 
 }  // namespace

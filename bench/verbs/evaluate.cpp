@@ -5,6 +5,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/table_options.hpp"
 #include "bench/studies/calibration/evaluation_study.hpp"
 #include "bench/studies/calibration/tracks_csv.hpp"
 #include "bench/studies/run_folder.hpp"
@@ -20,6 +21,7 @@ struct EvaluateOptions {
   std::string out;     // folder for records, tables and tracks; empty: none
   bool overwrite = false;
   std::string format = "console";
+  std::vector<std::string> shown;
 };
 
 void add_options(CLI::App& app, EvaluateOptions& o) {
@@ -43,6 +45,7 @@ void add_options(CLI::App& app, EvaluateOptions& o) {
   app.add_option("--out", o.out, "keep records, tables and tracks in this folder")->type_name("DIR");
   app.add_flag("--overwrite", o.overwrite, "replace what --tracks or --out find there");
   add_format(app, o.format);
+  add_tables(app, o.shown, TablesByDefault::All);
 }
 
 ExitCode evaluate_command(const EvaluateOptions& options) {
@@ -62,7 +65,7 @@ ExitCode evaluate_command(const EvaluateOptions& options) {
     watcher.results_begin();
     write_result(options.tracks, csv, existing_files(options.overwrite));
   }
-  if (options.tracks != "-") print_tables(tables, format);
+  if (options.tracks != "-") return print_chosen(tables, options.shown, format, TablesByDefault::All);
   return ExitCode::Success;
 }
 

@@ -13,6 +13,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/table_options.hpp"
 #include "bench/options/written_files.hpp"
 #include "bench/studies/figure_files.hpp"
 #include "bench/studies/records.hpp"
@@ -31,6 +32,7 @@ struct ReportOptions {
   std::string title;    // of the page; empty: what was run
   bool overwrite = false;
   std::string format = "console";
+  std::vector<std::string> shown;
 };
 
 void add_options(CLI::App& app, ReportOptions& o) {
@@ -42,6 +44,7 @@ void add_options(CLI::App& app, ReportOptions& o) {
   app.add_flag("--overwrite", o.overwrite, "replace the page or the figures that are there");
   app.add_option("runs", o.runs, "folders with runs.jsonl, or .jsonl files")->required();
   add_format(app, o.format);
+  add_tables(app, o.shown, TablesByDefault::All);
 }
 
 namespace fs = std::filesystem;
@@ -52,10 +55,9 @@ ExitCode report_command(const ReportOptions& options) {
   const std::vector<RunRecord> records = read_all_records(options.runs, watcher);
   for (const std::string& sentence : unknown_records(records)) watcher.warn(sentence);
   if (options.out.empty() && options.figures.empty()) {
-    print_tables(
+    return print_chosen(
         record_tables(records, notes_of_best(records), format == Format::Json || format == Format::Csv),
-        format);
-    return ExitCode::Success;
+        options.shown, format, TablesByDefault::All);
   }
   const Existing existing = existing_files(options.overwrite);
   refuse_existing("--out", options.out, options.overwrite);

@@ -11,6 +11,7 @@
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/options/table_options.hpp"
 #include "bench/options/trust_options.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/records.hpp"
@@ -36,6 +37,7 @@ struct RunOptions {
   std::string out;  // folder for records and tables; empty: none
   bool overwrite = false;
   std::string format = "console";
+  std::vector<std::string> tables;
   bool quiet = false;
   std::string config;  // file with options that the command line does not give
 };
@@ -93,6 +95,7 @@ void add_options(CLI::App& app, RunOptions& options) {
       "go on in --out where an earlier call was ended: its complete runs are kept, missing ones run");
   app.add_option("--format", options.format, "of the tables on standard output [console]")
       ->type_name("console|md|csv|json|latex");
+  add_tables(app, options.tables, TablesByDefault::Key);
   app.add_option("--config", options.config, "options from a JSON or INI/TOML file; the command line wins")
       ->type_name("FILE");
   app.add_flag("--quiet", options.quiet,
@@ -125,6 +128,18 @@ ExitCode outcome(const RunOptions& options, const SolverRuns& runs) {
   return ExitCode::Success;
 }
 
+// Where the files are and what to do with them.
+void say_what_is_next(const RunOptions& options, const std::vector<RunRecord>& records) {
+  if (options.quiet || !any_result(records)) return;
+  if (options.out.empty())
+    hint("nothing was kept: --out=DIR keeps records and tables for report, export and compare");
+  else
+    hint(
+        fmt::format("{0}: records and tables; next: bench report {0} --out=report.html, bench export {0} "
+                    "--to=yaml",
+                    options.out));
+}
+
 void require_resumable(const RunOptions& options) {
   if (!options.study.resume) return;
   if (options.out.empty()) throw std::invalid_argument("--resume: --out is missing, the folder to go on in");
@@ -154,7 +169,9 @@ ExitCode run_command(const RunOptions& options, const Catalogue& catalogue) {
   for (Table& table : comparison_tables(runs.records, notes_of_best(runs.records)))
     tables.push_back(std::move(table));
   folder.save(tables);
-  print_tables(tables, format);
+  const ExitCode printed =
+      print_chosen(std::move(tables), options.tables, format, TablesByDefault::Key, options.quiet);
+  say_what_is_next(options, runs.records);
   if (trust.interrupted()) {
     const bool resumable = options.trust.bootstrap > 0 && !options.out.empty();
     note(fmt::format("interrupted: all runs are complete, their validation{} is not{}",
@@ -162,7 +179,8 @@ ExitCode run_command(const RunOptions& options, const Catalogue& catalogue) {
                      resumable ? "; the same call with --overwrite goes on with the bootstrap" : ""));
     return ExitCode::Interrupted;
   }
-  return outcome(options, runs);
+  const ExitCode ended = outcome(options, runs);
+  return ended == ExitCode::Success ? printed : ended;
 }
 
 }  // namespace

@@ -8,9 +8,17 @@
 #include "reports/kinds/calibration/summary_tables.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
 #include "reports/kinds/kinds.hpp"
+#include "reports/page/method_colours.hpp"
 
 namespace odobench {
 namespace {
+
+std::vector<std::string> labels_of(const std::vector<RunRecord>& records) {
+  std::vector<std::string> labels;
+  for (const RunRecord& r : records)
+    if (std::find(labels.begin(), labels.end(), r.label) == labels.end()) labels.push_back(r.label);
+  return labels;
+}
 
 // "40 runs of lm, ip, ga, pso on vitko2024"
 std::string description(const std::vector<RunRecord>& records) {
@@ -76,6 +84,7 @@ Document make_report(const ReportInput& input) {
   Section provenance{"provenance", "Provenance", "What the numbers depend on.", {}};
   append(provenance_tables(input.records), provenance);
   finish(std::move(provenance), document);
+  share_method_colours(document, labels_of(input.records));
   return document;
 }
 

@@ -171,6 +171,8 @@ void append_sentences(std::string& out, const Table& table, int limit) {
       begin = "  ";
     }
   }
+  for (const std::string& note : table.notes)
+    for (const std::string& line : wrap_text(one_line(note), limit)) append_line(out, line);
 }
 
 void append_table(std::string& out, const Table& table, int limit, bool bold, bool explain) {

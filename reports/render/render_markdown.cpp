@@ -51,6 +51,7 @@ std::string render_markdown(const std::vector<Table>& tables) {
     out += fmt::format("### {}\n\n", escaped(table.title));
     if (!table.sentences.empty()) {
       for (const std::string& sentence : sentences_of(table)) out += markdown_note(sentence);
+      for (const std::string& note : table.notes) out += markdown_note(note);
       continue;
     }
     out += "|";

@@ -68,6 +68,7 @@ struct Table {
   std::vector<std::size_t> references = {};  // rows that do not compete for the best value: nominal, a bound
   // Id of a column of sentences: console and md show these, one below the other, and no table; "": a table.
   std::string sentences = {};
+  bool key = false;  // of those few that are shown first; the others on demand
 };
 
 // Numbers that repeat, relative: what compilers and processors change about them.

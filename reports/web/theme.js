@@ -1,7 +1,7 @@
 // Colours and fonts of charts: on a light page, on a dark page, and in print (SVG files, too). Also run by node.
 //
 // Categorical colours: told apart by people with protanopia, deuteranopia and tritanopia, contrast with the background
-// of at least 3. Text: at least 4.5. Marks may name a style that has no place in a palette:
+// of at least 3. The eighth is for nominal parameters, the ninth for the reference (reports/page/method_colours.hpp). Text: at least 4.5. Marks may name a style that has no place in a palette:
 //   reference  a line that results are compared with (nominal, truth)     muted  what is only context
 (function (root) {
   'use strict';
@@ -9,13 +9,13 @@
   const fonts = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
   const light = {
     background: '#ffffff', text: '#1c2127', muted: '#555e69', line: '#8b939d', grid: '#e9ebee',
-    categories: ['#1170c8', '#e0670f', '#00694e', '#a3238b', '#6a4d00', '#0b3d5c', '#4f55d8', '#868c96'],
+    categories: ['#1170c8', '#e0670f', '#00694e', '#a3238b', '#6a4d00', '#0b3d5c', '#4f55d8', '#868c96', '#1c2127'],
   };
   const dark = {
     background: '#14171b', text: '#e3e7ec', muted: '#a3acb7', line: '#6f7883', grid: '#282d34',
-    categories: ['#549ff0', '#e2762f', '#3a9f6e', '#f7cfe0', '#ecc230', '#62d9f7', '#a869c8', '#7d838e'],
+    categories: ['#549ff0', '#e2762f', '#3a9f6e', '#f7cfe0', '#ecc230', '#62d9f7', '#a869c8', '#7d838e', '#e3e7ec'],
   };
-  const print = {...light, text: '#000000', muted: '#333333', line: '#555555', grid: '#e2e2e2'};
+  const print = {...light, categories: [...light.categories.slice(0, 8), '#000000'], text: '#000000', muted: '#333333', line: '#555555', grid: '#e2e2e2'};
   const colours = {light, dark, print};
 
   // What only a drawing can tell: whether names below a horizontal axis have to be tilted, how many entries of a legend fit side

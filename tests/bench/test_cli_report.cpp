@@ -165,8 +165,9 @@ TEST_F(CliReport, FiguresAreSvgFiles) {
     EXPECT_THAT(svg, Not(HasSubstr("NaN"))) << entry.path();
     ++count;
   }
-  EXPECT_EQ(count,
-            18u + 6u);  // three per trajectory; convergence (2), repeats, parameters, two of identifiability
+  EXPECT_EQ(
+      count,
+      18u + 7u);  // three per trajectory; card, convergence (2), repeats, parameters, identifiability (2)
 }
 
 TEST_F(CliReport, WithoutNodeFiguresAreRefusedInOneLine) {

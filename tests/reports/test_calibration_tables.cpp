@@ -65,13 +65,15 @@ std::vector<RunRecord> calibration_records() {
 TEST(ComparisonTables, OrderOfTablesAndRowsIsStable) {
   const auto tables = comparison_tables(calibration_records());
   EXPECT_THAT(ids(tables),
-              ElementsAre("verdict", "errors.line_x", "errors.circle", "parameters", "totals", "solvers"));
+              ElementsAre("verdict", "overview", "found", "errors.line_x", "errors.circle", "parameters",
+                          "totals", "solvers"));
   EXPECT_THAT(labels(tables[0]), ElementsAre("use", "bounds"));
-  EXPECT_THAT(labels(tables[1]), ElementsAre("nominal", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[3]),
+  EXPECT_THAT(labels(tables[1]), ElementsAre("nominal", "published", "lm", "x", "ga"));
+  EXPECT_THAT(labels(tables[3]), ElementsAre("nominal", "published", "lm", "ga"));
+  EXPECT_THAT(labels(tables[5]),
               ElementsAre("lower bound", "nominal", "upper bound", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[4]), ElementsAre("nominal", "published", "lm", "ga"));
-  EXPECT_THAT(labels(tables[5]), ElementsAre("nominal", "published", "lm", "x", "ga"));
+  EXPECT_THAT(labels(tables[6]), ElementsAre("nominal", "published", "lm", "ga"));
+  EXPECT_THAT(labels(tables[7]), ElementsAre("nominal", "published", "lm", "x", "ga"));
   EXPECT_TRUE(comparison_tables({}).empty());
   for (Format format : {Format::Console, Format::Markdown, Format::Csv, Format::Json, Format::Latex})
     EXPECT_FALSE(render(tables, format).empty());
@@ -135,8 +137,8 @@ TEST(ComparisonTables, OneRepetitionShowsNoSigmaAndBrokenOnesShowNan) {
   RunRecord one = calibration_record("lm", "run", 1, 0.1);
   one.errors.resize(1);
   const auto single = comparison_tables({one});
-  EXPECT_TRUE(cell(single[0], "lm", "sigma_x").empty());
-  EXPECT_FALSE(cell(single[0], "lm", "e_max_x").empty());
+  EXPECT_TRUE(cell(table(single, "errors.line_x"), "lm", "sigma_x").empty());
+  EXPECT_FALSE(cell(table(single, "errors.line_x"), "lm", "e_max_x").empty());
   RunRecord broken = calibration_record("lm", "run", 1, std::numeric_limits<double>::quiet_NaN());
   EXPECT_THAT(render(comparison_tables({broken}), Format::Markdown), HasSubstr("| lm | nan | nan | nan |"));
 }
@@ -168,7 +170,8 @@ TEST(ComparisonTables, DifferentBoxesAreSaid) {
 
 TEST(ComparisonTables, NotesGoToTheParametersElseToTheSolvers) {
   const auto with = comparison_tables(calibration_records(), {"barely determined"});
-  EXPECT_THAT(table(with, "parameters").notes, Contains("barely determined"));
+  EXPECT_THAT(table(with, "found").notes, Contains("barely determined"));
+  EXPECT_THAT(table(with, "parameters").notes, Not(Contains("barely determined")));
   EXPECT_THAT(table(with, "solvers").notes, Not(Contains("barely determined")));
   const auto without = comparison_tables({run_record("lm", 1)}, {"barely determined"});
   EXPECT_THAT(table(without, "solvers").notes, Contains("barely determined"));
@@ -227,14 +230,16 @@ TEST(ComparisonTables, GroupsPerProblemAndDataSet) {
   const auto tables =
       comparison_tables({calibration_record("lm", "run", 100, 0.1), other, run_record("lm", 1)});
   EXPECT_THAT(ids(tables),
-              ElementsAre("calibration.demo.errors.line_x", "calibration.demo.errors.circle",
+              ElementsAre("calibration.demo.overview", "calibration.demo.found",
+                          "calibration.demo.errors.line_x", "calibration.demo.errors.circle",
                           "calibration.demo.parameters", "calibration.demo.totals",
-                          "calibration.demo.solvers", "calibration.vitko2024.errors.line_x",
+                          "calibration.demo.solvers", "calibration.vitko2024.overview",
+                          "calibration.vitko2024.found", "calibration.vitko2024.errors.line_x",
                           "calibration.vitko2024.errors.circle", "calibration.vitko2024.parameters",
                           "calibration.vitko2024.totals", "calibration.vitko2024.solvers", "sphere.solvers"));
-  EXPECT_EQ(tables[0].title, "Errors on trajectory line_x (calibration, demo)");
+  EXPECT_EQ(tables[2].title, "Errors on trajectory line_x (calibration, demo)");
   EXPECT_EQ(tables.back().title, "Solvers (sphere)");
-  EXPECT_EQ(cell(tables[4], "lm", "gap").value, 0) << "the best J of another set does not count";
+  EXPECT_EQ(cell(tables[6], "lm", "gap").value, 0) << "the best J of another set does not count";
 }
 
 TEST(ComparisonTables, SetsOfOneNameAreKeptApartByTheirCheckSum) {

@@ -42,7 +42,8 @@ const RunRecord& lowest(const std::vector<RunRecord>& records) {
 TEST(CliValidation, BothQuestionsAreAnsweredByDefault) {
   const TemporaryFolder folder;
   const std::string data = whole_set(folder), out = (folder / "out").string();
-  const ProcessResult run = run_bench({"--solver=lm,ga", data, "--max-evals=300", "--out=" + out});
+  const ProcessResult run =
+      run_bench({"--solver=lm,ga", data, "--max-evals=300", "--tables=all", "--out=" + out});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("same drives again"), HasSubstr("kind never seen"),
                              HasSubstr("Not validated, since J is not that of the fits: ga"),
@@ -96,7 +97,7 @@ TEST(CliValidation, SaysWhyThereIsNone) {
 
   const TemporaryFolder kind;
   const std::string one_kind = set_of(kind, [&](const Recording& r) { return r.trajectory == first; });
-  run = run_bench({"--solver=lm", one_kind});
+  run = run_bench({"--solver=lm", one_kind, "--tables=all"});
   EXPECT_THAT(run.err,
               HasSubstr("not validated on kinds of drives never seen: all recordings are of one kind"));
   EXPECT_THAT(run.out, AllOf(HasSubstr("same drives again"), Not(HasSubstr("kind never seen  "))));
@@ -185,7 +186,8 @@ TEST(CliValidation, CalibrateAnswersToo) {
   const TemporaryFolder folder;
   whole_set(folder);
   const ProcessResult run =
-      run_bench({"calibrate", (folder / "set.json").string(), "--out=" + (folder / "out").string()});
+      run_bench({"calibrate", (folder / "set.json").string(), "--tables=validation,folds",
+                 "--out=" + (folder / "out").string()});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("same drives again"), HasSubstr("Folds of the validation")));
   EXPECT_THAT(testing::content(folder / "out/report.html"), HasSubstr("Folds of the validation"));

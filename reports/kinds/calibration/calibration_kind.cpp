@@ -9,8 +9,10 @@
 
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
+#include "reports/kinds/calibration/card_figure.hpp"
 #include "reports/kinds/calibration/drive_tables.hpp"
 #include "reports/kinds/calibration/fit_table.hpp"
+#include "reports/kinds/calibration/overview_tables.hpp"
 #include "reports/kinds/calibration/run_figures.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/track_figures.hpp"
@@ -28,33 +30,6 @@ std::string prefix_of(const Comparison& comparison) {
   return comparison.id_prefix.empty() ? "" : vega::slug(comparison.problem + "-" + comparison.dataset) + ".";
 }
 
-const ComparisonRow* lowest_row(const Comparison& comparison) {
-  const ComparisonRow* best = nullptr;
-  for (const ComparisonRow& row : comparison.rows)
-    if (row.label != "nominal" && row.shown->cost &&
-        (best == nullptr || *row.shown->cost < *best->shown->cost))
-      best = &row;
-  return best;
-}
-
-// "Lowest J: 98.11878 by lm; nominal 1135.332. Its total error is 0.378039, nominal 1.273980 (-70.33 %); 6 of
-// 18 mean errors got worse."
-std::string headline(const Comparison& comparison) {
-  const ComparisonRow* best = lowest_row(comparison);
-  if (best == nullptr) return "";
-  const ComparisonRow* nominal = comparison.nominal();
-  std::string text =
-      fmt::format("Lowest J{}: {:.10g} by {}", comparison.title_suffix, *best->shown->cost, best->label);
-  if (nominal == nullptr || !nominal->shown->cost) return text + ".";
-  text += fmt::format("; nominal {:.10g}.", *nominal->shown->cost);
-  if (best->errors.empty() || best->errors.size() != nominal->errors.size()) return text;
-  const double total = error_totals(best->errors).total, before = error_totals(nominal->errors).total;
-  const WorseMeans worse = worse_means(*best, *nominal);
-  return text + fmt::format(
-                    " Its total error is {:.6f}, nominal {:.6f} ({:+.2f} %); {} of {} mean errors got worse.",
-                    total, before, 100 * (total - before) / before, worse.worse, worse.all);
-}
-
 // The table without the columns of these ids.
 Table without(Table table, const std::set<std::string>& ids) {
   for (std::size_t c = table.columns.size(); c-- > 0;) {
@@ -70,18 +45,25 @@ void append_if(std::optional<Table> table, Section& section) {
   if (table) section.blocks.emplace_back(std::move(*table));
 }
 
-void summarise(const std::vector<Comparison>& comparisons, Section& summary) {
+// The answer first: what it comes to, before and after, a row per method.
+void summarise(const std::vector<Comparison>& comparisons, const std::vector<PlacedTracks>& tracks,
+               Section& summary, Document& document) {
   for (const Comparison& c : comparisons) {
     const bool ran = std::any_of(c.rows.begin(), c.rows.end(),
                                  [](const ComparisonRow& r) { return r.kind != "evaluation"; });
     if (const std::optional<Table> verdict = verdict_table(c))
       for (const std::string& sentence : sentences_of(*verdict))
         summary.blocks.emplace_back(Paragraph{sentence + c.title_suffix});
-    if (const std::string text = headline(c); !text.empty()) summary.blocks.emplace_back(Paragraph{text});
-    if (has_costs(c))
+    add_card_figure(c, tracks, prefix_of(c), summary, document);
+    if (std::optional<Table> overview = overview_table(c); overview && ran)
+      summary.blocks.emplace_back(std::move(*overview));
+    else if (has_costs(c))
       summary.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
                                       : cost_table(c));
-    append_if(totals_table(c), summary);
+    if (const std::optional<Table> found = found_table(c))
+      for (const std::string& sentence : sentences_of(*found))
+        summary.blocks.emplace_back(Paragraph{found->title + ": " + sentence});
+    if (!ran) append_if(totals_table(c), summary);
   }
 }
 
@@ -98,6 +80,7 @@ Section errors(const std::vector<Comparison>& comparisons, Document& document) {
     else
       append(error_tables(c), section);
     append(drive_tables(c), section);
+    if (best_run(c).row != nullptr) append_if(totals_table(c), section);
     append_if(fit_table(c), section);
     append(noise_tables(c), section);
     append_if(weighted_down_table(c), section);
@@ -120,6 +103,8 @@ Section convergence(const std::vector<Comparison>& comparisons, Document& docume
     add_convergence_figures(c, prefix_of(c), section, document);
     add_repeat_figure(c, prefix_of(c), section, document);
     append_if(repeats_table(c), section);
+    if (overview_table(c) && best_run(c).row != nullptr)
+      section.blocks.emplace_back(without(solver_table(c), {"message", "active_bounds"}));
   }
   return section;
 }
@@ -140,7 +125,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
 
 void add_calibration_page(const KindInput& input, Section& summary, Document& document) {
   const std::vector<Comparison> comparisons = compare(input.records);
-  summarise(comparisons, summary);
+  summarise(comparisons, input.tracks, summary, document);
   finish(errors(comparisons, document), document);
   finish(validation(comparisons), document);
   Section trajectories{"trajectories",

@@ -4,6 +4,7 @@
 
 #include "reports/kinds/calibration/drive_tables.hpp"
 #include "reports/kinds/calibration/fit_table.hpp"
+#include "reports/kinds/calibration/overview_tables.hpp"
 #include "reports/kinds/calibration/summary_tables.hpp"
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/verdict_table.hpp"
@@ -39,10 +40,18 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
   std::vector<Table> tables;
   for (const Comparison& comparison : compare(records)) {
     append(tables, verdict_table(comparison));
+    std::optional<Table> overview = overview_table(comparison);
+    const bool summarised = overview.has_value();
+    append(tables, std::move(overview));
+    std::optional<Table> found = found_table(comparison);
+    if (found) append_notes(*found, notes);
+    const bool noted = found.has_value();
+    append(tables, std::move(found));
     for (Table& table : error_tables(comparison)) tables.push_back(std::move(table));
     for (Table& table : drive_tables(comparison)) tables.push_back(std::move(table));
     Table solvers = solver_table(comparison);
-    append_parameters(tables, comparison, solvers, notes);
+    solvers.key = !summarised;
+    append_parameters(tables, comparison, solvers, noted ? std::vector<std::string>{} : notes);
     append(tables, totals_table(comparison));
     for (Table& table : validation_tables(comparison)) tables.push_back(std::move(table));
     append(tables, fit_table(comparison));
@@ -71,6 +80,7 @@ std::vector<Table> evaluation_tables(const std::vector<RunRecord>& records,
     append_parameters(rest, comparison, cost, notes);
     append(rest, totals_table(comparison));
     append(rest, fit_table(comparison));
+    cost.key = true;
     tables.push_back(std::move(cost));
     for (Table& table : rest) tables.push_back(std::move(table));
   }

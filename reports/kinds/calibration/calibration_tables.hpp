@@ -19,6 +19,8 @@ namespace odobench {
 
 // Everything, in this order, tables without content left out:
 //   verdict            what the calibration comes to, in sentences (verdict_table.hpp)
+//   overview           a row per label: RMS in mm and degrees, total error, effort (overview_tables.hpp)
+//   found              the parameters of the best run in a sentence (overview_tables.hpp)
 //   errors.TRAJECTORY  per trajectory: e_max, e_sr, sigma of x, y [m], theta [rad], difference to nominal in
 //                      brackets
 //   maxima, drives, ends  in the plane (reports/kinds/calibration/drive_tables.hpp)
@@ -35,8 +37,8 @@ namespace odobench {
 //   repeats            median, min, max, interquartile range of J, evaluations and time; runs near the best
 // and at the end, over all problems, those of reports/kinds/calibration/summary_tables.hpp.
 // With several problems or data sets, ids begin with "PROBLEM.DATASET." and titles end with the names.
-// `notes` (for example: which parameters are barely determined) go below the parameter table of every group
-// that has one, else below its solver table.
+// `notes` (for example: which parameters are barely determined) go below the parameters that were found, else
+// below the parameter table of every group that has one, else below its solver table.
 std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
                                      const std::vector<std::string>& notes = {});
 

@@ -14,10 +14,6 @@ namespace {
 
 using vega::json;
 
-double scale_of(const ParameterValue& p) {
-  return p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
-}
-
 std::vector<const ParameterValue*> free_parameters(const RunRecord& record) {
   std::vector<const ParameterValue*> list;
   for (const ParameterValue& p : record.parameters)
@@ -36,16 +32,6 @@ const RunRecord* best_described(const Comparison& comparison) {
   return best;
 }
 
-// Half the 95 % interval of a free parameter, relative; none where the drives do not tell it or where the
-// record says nothing.
-std::optional<double> half_width_of(const RunRecord& record, const ParameterValue& p) {
-  if (!record.trust) return std::nullopt;
-  for (const ParameterIntervalRecord& own : record.trust->parameters)
-    if (own.name == p.name && std::isfinite(own.interval.half_width))
-      return own.interval.half_width / scale_of(p);
-  return std::nullopt;
-}
-
 // Of the plot, %: all bounds and values, and the bars unless they are far wider than the box.
 double plot_edge(const Comparison& comparison) {
   double box = 0, interval = 0;
@@ -53,10 +39,10 @@ double plot_edge(const Comparison& comparison) {
     const std::vector<const ParameterValue*> parameters = free_parameters(*row.shown);
     for (const ParameterValue* free : parameters) {
       const ParameterValue& p = *free;
-      const double value = std::abs(p.value - p.nominal) / scale_of(p);
-      box = std::max({box, std::abs(p.upper - p.nominal) / scale_of(p),
-                      std::abs(p.lower - p.nominal) / scale_of(p), value});
-      if (const std::optional<double> half = half_width_of(*row.shown, p))
+      const double value = std::abs(p.value - p.nominal) / deviation_scale(p);
+      box = std::max({box, std::abs(p.upper - p.nominal) / deviation_scale(p),
+                      std::abs(p.lower - p.nominal) / deviation_scale(p), value});
+      if (const std::optional<double> half = relative_half_width(*row.shown, p))
         interval = std::max(interval, value + *half);
     }
   }
@@ -125,6 +111,18 @@ json parameter_spec(const std::string& data, const std::string& caption,
 
 }  // namespace
 
+double deviation_scale(const ParameterValue& p) {
+  return p.nominal != 0 ? std::abs(p.nominal) : (p.upper - p.lower) / 2;
+}
+
+std::optional<double> relative_half_width(const RunRecord& record, const ParameterValue& p) {
+  if (!record.trust) return std::nullopt;
+  for (const ParameterIntervalRecord& own : record.trust->parameters)
+    if (own.name == p.name && std::isfinite(own.interval.half_width))
+      return own.interval.half_width / deviation_scale(p);
+  return std::nullopt;
+}
+
 void add_parameter_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                           Document& document) {
   std::vector<std::string> names, labels;
@@ -138,9 +136,9 @@ void add_parameter_figure(const Comparison& comparison, const std::string& prefi
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const ParameterValue& p = *parameters[i];
       if (first) names.push_back(p.name);
-      const auto percent = [&](double v) { return 100 * (v - p.nominal) / scale_of(p); };
+      const auto percent = [&](double v) { return 100 * (v - p.nominal) / deviation_scale(p); };
       // Where there is none the interval has no length and is not seen.
-      const std::optional<double> found = half_width_of(record, p);
+      const std::optional<double> found = relative_half_width(record, p);
       const double half = 100 * found.value_or(0);
       const std::string shown = found ? fmt::format("{:.6g}", half) : "none: decided by the box";
       fmt::format_to(std::back_inserter(csv), "{},{},{},{:.9g},{:.6g},{:.6g},{},{:.9g},{:.9g}\n",
@@ -178,8 +176,9 @@ std::optional<Table> weak_directions(const RunRecord& record) {
     const double deviation = (*residual)[0] / (*values)[k];
     double half = 0;  // half the box along the direction, relative
     for (std::size_t i = 0; i < n; ++i)
-      half = std::max(half, std::abs((*directions)[k * n + i]) *
-                                (parameters[i]->upper - parameters[i]->lower) / 2 / scale_of(*parameters[i]));
+      half =
+          std::max(half, std::abs((*directions)[k * n + i]) * (parameters[i]->upper - parameters[i]->lower) /
+                             2 / deviation_scale(*parameters[i]));
     const bool known = std::isfinite(deviation) && deviation < half;
     table.rows.push_back(
         {count_cell(static_cast<double>(k + 1)), significant_cell((*values)[k], 4),

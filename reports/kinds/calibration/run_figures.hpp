@@ -26,6 +26,12 @@ void add_repeat_figure(const Comparison& comparison, const std::string& prefix, 
 void add_parameter_figure(const Comparison& comparison, const std::string& prefix, Section& section,
                           Document& document);
 
+// What deviations from nominal are measured by: |nominal|, half the box where that is 0.
+double deviation_scale(const ParameterValue& p);
+// Half the 95 % interval of a free parameter in that unit; none where the drives do not tell it or where the
+// record says nothing.
+std::optional<double> relative_half_width(const RunRecord& record, const ParameterValue& p);
+
 // What the data determine at the best result: singular values, weak directions in words, correlations.
 // Nothing without the series of a record.
 void add_identifiability(const Comparison& comparison, const std::string& prefix, Section& section,

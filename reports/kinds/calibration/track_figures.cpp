@@ -224,10 +224,12 @@ class Charts {
                   {"y", vega::quantitative(y, y_title)},
                   {"order", {{"field", "t"}, {"type", "quantitative"}}},
                   {"detail", {{{"field", "d"}, {"type", "nominal"}}}}};
+    std::vector<std::string> named = methods_;
+    if (with_reference) named.emplace_back(kReference);
+    encoding["color"] = vega::line_color("label", named);
     json reference{{"transform", {vega::filter("datum.s == 0")}},
                    {"mark", {{"type", "line"}, {"style", "reference"}}},
                    {"encoding", encoding}};
-    encoding["color"] = vega::line_color("label", methods_);
     json methods{
         {"transform", {vega::filter("datum.s > 0")}}, {"mark", {{"type", "line"}}}, {"encoding", encoding}};
     return with_reference ? json::array({reference, methods}) : json::array({methods});

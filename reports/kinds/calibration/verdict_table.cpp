@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/range.hpp"
+#include "reports/kinds/calibration/overview_tables.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_record.hpp"
 #include "reports/kinds/trust/validation_sentences.hpp"
@@ -21,23 +22,6 @@ struct Clause {
   double value = kNotANumber, half_width = kNotANumber, against = kNotANumber;
   std::string unit;
 };
-
-struct Best {
-  const ComparisonRow* row = nullptr;
-  const RunRecord* record = nullptr;  // its run with the lowest J
-};
-
-Best best_of(const Comparison& comparison) {
-  Best best;
-  for (const ComparisonRow& row : comparison.rows) {
-    if (row.kind != "run") continue;
-    for (const RunRecord* run : row.runs)
-      if (run->cost && std::isfinite(*run->cost) &&
-          (best.record == nullptr || *run->cost < *best.record->cost))
-        best = {&row, run};
-  }
-  return best;
-}
 
 std::string count_words(std::size_t count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
@@ -53,7 +37,7 @@ double total_of(const RunRecord& record) {
 }
 
 // Whether the result is to be used, by what is known of it: worse on the same drives again is worse at all.
-Clause use_clause(const Best& best, double nominal, double total) {
+Clause use_clause(const BestRun& best, double nominal, double total) {
   const RunRecord& record = *best.record;
   const double change = change_percent(total, nominal);
   Clause clause{"use", "", change, kNotANumber, kNotANumber, "%"};
@@ -104,9 +88,7 @@ std::string number_words(const DeterminedRecord& d) {
     unit = read.name;
   }
   const double half = factor * d.interval.half_width;
-  const int digits = std::isfinite(half) && half > 0
-                         ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6)
-                         : 2;
+  const int digits = digits_of_half_width(half, 2);
   return fmt::format("{} {:+.{}f} +- {:.{}f} {}", name, factor * (d.value - shift), digits, half, digits,
                      unit);
 }
@@ -169,7 +151,7 @@ void add_set_aside(const RunRecord& record, std::vector<Clause>& clauses) {
 }  // namespace
 
 std::optional<Table> verdict_table(const Comparison& comparison) {
-  const Best best = best_of(comparison);
+  const BestRun best = best_run(comparison);
   if (best.record == nullptr || comparison.nominal() == nullptr || best.record->errors.empty())
     return std::nullopt;
   const double nominal = error_totals(comparison.nominal()->errors).total, total = total_of(*best.record);
@@ -188,6 +170,7 @@ std::optional<Table> verdict_table(const Comparison& comparison) {
                    number_column("value"),   number_column("half_width", "+-"),
                    number_column("against"), text_column("unit")};
   table.sentences = "sentence";
+  table.key = true;
   const auto cell = [](double value) { return std::isfinite(value) ? significant_cell(value, 4) : Cell{}; };
   for (const Clause& c : clauses)
     table.rows.push_back({text_cell(c.about), text_cell(c.sentence), cell(c.value), cell(c.half_width),

@@ -10,6 +10,8 @@
 namespace odobench {
 namespace {
 
+constexpr int kPlainDigits = 4;  // of a number without an interval
+
 struct TrustRow {
   std::string label;
   const TrustRecord* trust;
@@ -25,12 +27,6 @@ std::vector<TrustRow> rows_of(const Comparison& comparison) {
     if (best != nullptr) rows.push_back({row.label, &*best->trust});
   }
   return rows;
-}
-
-// With the digits that a half width leaves: two of its own.
-int digits_of(double half_width) {
-  if (!(half_width > 0) || !std::isfinite(half_width)) return 4;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 9);
 }
 
 Cell value_cell(double value, int digits) {
@@ -110,7 +106,7 @@ Table determined_table(const Comparison& comparison, const std::vector<TrustRow>
   for (const TrustRow& row : rows)
     for (const DeterminedRecord& d : row.trust->determined) {
       const ReadUnit unit = read_unit(d.unit);
-      const int digits = digits_of(unit.factor * d.interval.half_width);
+      const int digits = digits_of_half_width(unit.factor * d.interval.half_width, kPlainDigits);
       std::vector<Cell> cells = {
           text_cell(row.label),
           text_cell(d.name),
@@ -131,7 +127,7 @@ Table parameter_intervals(const Comparison& comparison, const std::vector<TrustR
   for (const TrustRow& row : rows)
     for (const ParameterIntervalRecord& p : row.trust->parameters) {
       const ReadUnit unit = read_unit(p.unit);
-      const int digits = std::max(3, digits_of(unit.factor * p.interval.half_width));
+      const int digits = std::max(3, digits_of_half_width(unit.factor * p.interval.half_width, kPlainDigits));
       std::vector<Cell> cells = {text_cell(row.label), text_cell(p.name), text_cell(unit.name),
                                  value_cell(unit.factor * p.value, digits)};
       add_interval(p.interval, unit.factor, digits, cells);
@@ -147,7 +143,7 @@ Table drive_errors_table(const Comparison& comparison, const std::vector<TrustRo
   for (const TrustRow& row : rows)
     for (const DriveErrorRecord& d : row.trust->drives) {
       const ReadUnit unit = read_unit(d.unit);
-      const int digits = digits_of(unit.factor * d.interval.half_width);
+      const int digits = digits_of_half_width(unit.factor * d.interval.half_width, kPlainDigits);
       std::vector<Cell> cells = {text_cell(row.label), text_cell(d.drive), text_cell(d.what),
                                  text_cell(unit.name),
                                  d.scatter > 0 ? value_cell(unit.factor * d.scatter, digits) : Cell{}};
@@ -163,6 +159,11 @@ Table drive_errors_table(const Comparison& comparison, const std::vector<TrustRo
 }
 
 }  // namespace
+
+int digits_of_half_width(double half_width, int otherwise) {
+  if (!(half_width > 0) || !std::isfinite(half_width)) return otherwise;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 9);
+}
 
 ReadUnit read_unit(const std::string& unit) {
   if (unit == "rad/m") return {"deg/m", 1 / kDegree};

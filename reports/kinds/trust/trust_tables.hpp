@@ -22,6 +22,10 @@ struct ReadUnit {
 };
 ReadUnit read_unit(const std::string& unit);
 
+// Digits after the point of a number whose 95 % half width this is: two of the half width; `otherwise` where
+// that is no positive number.
+int digits_of_half_width(double half_width, int otherwise);
+
 std::vector<Table> trust_tables(const Comparison& comparison);
 
 }  // namespace odobench
