@@ -59,13 +59,19 @@ class Proposer {
 
   LogProposal propose() {
     LogProposal out;
-    out.complete = !roles_.kinematics.empty() && roles_.reference.size() == 3;
-    if (out.complete) look_at_drives();
+    headings_ = roles_.reference.empty() && !roles_.gyro.empty();
+    out.complete = !roles_.kinematics.empty() && (headings_ || roles_.reference.size() == 3);
+    if (headings_)
+      say("reference: the gyro, for want of poses: headings alone, which tell ratios of lengths and no "
+          "length");
+    if (out.complete && headings_)
+      look_at_turns();
+    else if (out.complete)
+      look_at_drives();
     for (const SurveyedSource& source : sources_)
       if (!names_.contains(number(source)) && source.source.unreadable.empty())
         unused_.push_back(
             shown(source.source.name.empty() ? source.file.filename().string() : source.source.name));
-    out.drifts = roles_.drifts;
     out.map = map(false).dump(2) + "\n";
     out.reasons = std::move(roles_.reasons);
     if (!unused_.empty()) out.reasons.push_back(fmt::format("not used: {}", fmt::join(unused_, ", ")));
@@ -99,7 +105,7 @@ class Proposer {
       if (!surveyed.files.empty()) source["files"] = surveyed.files;
       for (const LogField& field : surveyed.source.fields)
         if (field.path == "header.stamp") source["time"] = "header.stamp";
-      if (offset_ && number == roles_.reference.front().source) source["offset_s"] = "estimate";
+      if (offset_ && !headings_ && number == roles_.reference.front().source) source["offset_s"] = "estimate";
       all[name] = std::move(source);
     }
     return all;
@@ -142,7 +148,8 @@ class Proposer {
     for (const Role& role : roles_.gyro) {
       MapJson json = of(role);
       json["unit"] = role.unit;
-      json["optional"] = true;
+      if (gyro_sign_ < 0) json["sign"] = -1;
+      if (!headings_) json["optional"] = true;
       all["gyro.z"] = std::move(json);
     }
     return all;
@@ -165,6 +172,7 @@ class Proposer {
     all["robot"] = robot(stand_in);
     all["sources"] = sources();
     all["signals"] = signals(stand_in);
+    if (roles_.drifts) all["reference"] = "drifting";
     if (mount_ && !stand_in) all["mount"] = "estimate";
     all["drives"] = {{"split", "standstill"}, {"standstill_s", 3.0}};
     all["limits"] = {{"max_gap_s", 0.2}};
@@ -198,13 +206,47 @@ class Proposer {
           offset->seconds, offset->correlation));
   }
 
+  // Which way the wheels turn the robot, by the gyro.
+  void look_at_turns() {
+    if (roles_.kinematics != "differential") return;
+    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
+    const LogCurves read = read_curves(own, group_logs(own, logs_).front(), options_, stop_);
+    const std::optional<TurnEvidence> found = turn_evidence(read);
+    if (!found) return say("no turns that wheels and gyro share: signs not checked");
+    std::map<std::string, double> side;
+    for (std::size_t i = 0; i < 2; ++i)
+      side[read.signals[i].name.substr(read.signals[i].name.find('.') + 1)] = found->share[i];
+    if (side["right"] < 0 && side["left"] > 0) {
+      gyro_sign_ = -1;
+      say("gyro: turns against the wheels: taken to hang upside down (sign -); or both wheels count "
+          "backwards, or "
+          "left is right");
+    } else {
+      for (const char* which : {"right", "left"})
+        if ((side[which] < 0) == (which == std::string("right"))) signs_[which] = -1;
+    }
+    for (const char* which : {"right", "left"})
+      say(fmt::format("{}: sign {} by the gyro ({:.2f} % of its turns explained)", which,
+                      signs_[which] < 0 ? '-' : '+', 100 * found->explained));
+  }
+
   void weigh_pair(const LogCurves& read, double offset) {
-    const std::vector<WheelEvidence> found = wheel_evidence(read, offset);
+    std::vector<WheelEvidence> found = wheel_evidence(read, offset);
     if (found.size() != roles_.wheels.size()) return;
     // The curves stand in the robot's order, the roles in the log's.
     std::map<std::string, WheelEvidence> by_side;
-    for (std::size_t i = 0; i < found.size(); ++i)
-      by_side[read.signals[i].name.substr(read.signals[i].name.find('.') + 1)] = found[i];
+    const auto sort_sides = [&] {
+      for (std::size_t i = 0; i < found.size(); ++i)
+        by_side[read.signals[i].name.substr(read.signals[i].name.find('.') + 1)] = found[i];
+    };
+    sort_sides();
+    // Both backwards and exchanged is what a frame that looks backwards makes of right names.
+    if (!roles_.by_place && found[0].along < 0 && found[1].along < 0 &&
+        by_side["left"].side() > by_side["right"].side()) {
+      for (WheelEvidence& e : found) e.along = -e.along;
+      sort_sides();
+      say("the tracked frame looks backwards on the robot, or both wheels count backwards and left is right");
+    }
     const bool swapped = by_side["left"].side() > by_side["right"].side();
     for (Role& role : roles_.wheels) {
       const WheelEvidence& e = by_side[role.which];
@@ -236,7 +278,8 @@ class Proposer {
   std::map<std::size_t, std::string> names_;
   std::map<std::string, int> signs_;
   std::vector<std::string> unused_;
-  bool offset_ = false, mount_ = false;
+  bool offset_ = false, mount_ = false, headings_ = false;
+  int gyro_sign_ = 1;
 };
 
 }  // namespace

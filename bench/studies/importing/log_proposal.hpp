@@ -14,7 +14,6 @@ struct LogProposal {
   std::string map;                   // JSON; null where the logs do not say
   std::vector<std::string> reasons;  // a line each
   bool complete = false;             // wheels, a class and a reference were found
-  bool drifts = false;               // the reference is another odometry
 };
 
 // Roles by names and types (datasets/import/logs/log_roles.hpp), then by what the drives say. With (v, omega)
