@@ -131,6 +131,30 @@ class FusionOfLogs : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(FusionOfLogs, TuneTakesThemToo) {
+  ASSERT_EQ(import_logs().exit_code, 0);
+  const ProcessResult run = run_bench({"tune", "--data=" + set(), "--sensors=" + sensors(), "--max-evals=40",
+                                       "--out=" + (folder_ / "tuned.json").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json given = json::parse(content(sensors())), tuned = json::parse(content(folder_ / "tuned.json"));
+  // The camera has no noise: what is believed of it falls; what is read stays.
+  const auto camera = [](const json& file) {
+    for (const json& s : file.at("sensors"))
+      if (s.at("name") == "camera") return s;
+    return json();
+  };
+  EXPECT_LT(camera(tuned)["filter"]["sigma_position"], camera(given)["filter"]["sigma_position"]);
+  EXPECT_EQ(camera(tuned)["file"], camera(given)["file"]);
+  // Other robots: one line.
+  json other = json::parse(content(set()));
+  other["robot"]["kinematics"] = "swerve";
+  other["robot"].erase("parameters");
+  const ProcessResult refused =
+      run_bench({"tune", "--data=" + folder_.file("other.json", other.dump()), "--sensors=" + sensors()});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("expected \"4wis4wid\""));
+}
+
 TEST_F(FusionOfLogs, TheSetKeepsTheirMeasurementsByTheRecordingsClock) {
   const ProcessResult imported = import_logs();
   ASSERT_EQ(imported.exit_code, 0) << imported.err;

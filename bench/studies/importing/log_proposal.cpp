@@ -263,9 +263,10 @@ class Proposer {
         say(fmt::format("{}: a radius of {:.3g} m: is the unit right?", role.which, radius));
     }
     if (swapped)
-      say(roles_.by_place
-              ? "left and right: as the turns say, the other way round than they stand"
-              : "left and right: the turns say that the names are the wrong way round: exchanged");
+      say(roles_.by_place ? "left and right: as the turns say, the other way round than they stand"
+                          : "left and right: the turns say that the names are the wrong way round: exchanged "
+                            "(or the reference's "
+                            "frame is mirrored, y to the right: then undo it)");
     const double track = std::abs(by_side["left"].side() - by_side["right"].side());
     say(fmt::format("distance of the wheels about {:.3f} m", track));
   }
