@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/catalogue/robots.hpp"
 #include "bench/studies/calibration/solver_study.hpp"
 #include "bench/studies/exporting/robot_export.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
@@ -27,7 +28,8 @@ namespace fs = std::filesystem;
 // The map that the logs are read by, as text.
 std::string find_map(const CalibrateStudy& study, Watcher& watcher, const Stop& stop) {
   if (!study.map.empty()) return read_file(study.map);
-  const LogProposal proposal = propose_log_map(study.logs, study.options, stop);
+  const LogProposal proposal = propose_log_map(
+      study.logs, study.options, stop, study.answers.robot.empty() ? "" : robot_class(study.answers.robot));
   for (const std::string& reason : proposal.reasons) watcher.note(reason);
   if (!proposal.complete)
     throw std::invalid_argument(

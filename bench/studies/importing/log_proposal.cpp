@@ -46,12 +46,13 @@ std::vector<SurveyedSource> nameable(std::vector<SurveyedSource> sources) {
 
 class Proposer {
  public:
-  Proposer(const std::vector<std::filesystem::path>& logs, const LogOptions& options, const Stop& stop)
+  Proposer(const std::vector<std::filesystem::path>& logs, const LogOptions& options, const Stop& stop,
+           const std::string& robot)
       : logs_(logs),
         options_(options),
         stop_(stop),
         sources_(nameable(log_import::survey_logs(logs, options, stop))),
-        roles_(find_roles(sources_)) {
+        roles_(find_roles(sources_, robot)) {
     for (const auto* list : {&roles_.wheels, &roles_.steering, &roles_.reference, &roles_.gyro})
       for (const Role& role : *list) name_source(role.source);
     for (const Role& role : roles_.wheels) signs_[role.which] = 1;
@@ -286,8 +287,8 @@ class Proposer {
 }  // namespace
 
 LogProposal propose_log_map(const std::vector<std::filesystem::path>& logs, const LogOptions& options,
-                            const Stop& stop) {
-  return Proposer(logs, options, stop).propose();
+                            const Stop& stop, const std::string& robot) {
+  return Proposer(logs, options, stop, robot).propose();
 }
 
 }  // namespace odobench

@@ -20,7 +20,8 @@ struct LogProposal {
 // the reference's velocity along its heading and yaw rate, a wheel's rate w = alpha v + beta omega by least
 // squares: the sign of alpha is the wheel's, that of beta / alpha the side it stands on, 1 / alpha about its
 // radius, the distance between sides about the track.
+// `robot`: its class, where it is known.
 LogProposal propose_log_map(const std::vector<std::filesystem::path>& logs, const LogOptions& options,
-                            const Stop& stop);
+                            const Stop& stop, const std::string& robot = "");
 
 }  // namespace odobench
