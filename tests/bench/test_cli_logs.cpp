@@ -148,6 +148,22 @@ TEST_F(CliLogs, AnotherOdometryIsAReferenceThatDrifts) {
   EXPECT_THAT(whole.err, Not(HasSubstr("--cost=segments, of")));
 }
 
+TEST_F(CliLogs, ProposesCountersThatRunOverAndFramesThatAreMirrored) {
+  DriveLog over;
+  over.bits = 10;
+  const ProcessResult counters = calibrate(drive(over));
+  ASSERT_EQ(counters.exit_code, 0) << counters.err;
+  EXPECT_THAT(counters.err, HasSubstr("wheel.left: a counter of 10 bits, which runs over"));
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+  DriveLog mirrored;
+  mirrored.y_to_the_right = true;
+  const ProcessResult frame = calibrate(drive(mirrored));
+  ASSERT_EQ(frame.exit_code, 0) << frame.err;
+  EXPECT_THAT(frame.err, HasSubstr("the reference's frame is mirrored"));
+  EXPECT_EQ(json::parse(content(folder_ / "out/map.json"))["signals"]["reference.y"]["sign"], -1);
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+}
+
 TEST_F(CliLogs, SaysWhatTheLogDoesNotSay) {
   const Args logs = drive({});
   const ProcessResult run = run_bench({"calibrate", logs[0], logs[1], "--out=" + out(), "--quiet"});

@@ -95,6 +95,21 @@ TEST_P(CameraOdometry, GivesTheRobotWithinItsIntervals) {
 INSTANTIATE_TEST_SUITE_P(Formats, CameraOdometry, ::testing::Values("mcap", "bag"),
                          [](const auto& test) { return std::string(test.param); });
 
+TEST_F(OwnReferences, WheelsAndGyroOutvoteAMirroredFrame) {
+  RobotBag bag;
+  bag.z_down = true;
+  const ProcessResult run = calibrate(bag, "mcap", 1);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the reference turns against gyro and wheels"));
+  EXPECT_THAT(run.err, Not(HasSubstr("exchanged")));
+  for (const json& p : run_record().at("parameters")) {
+    const double truth = p.at("name") == "b"        ? RobotBag::kTrack
+                         : p.at("name") == "r_left" ? RobotBag::kLeft
+                                                    : RobotBag::kRight;
+    EXPECT_NEAR(p.at("value").get<double>(), truth, 0.01 * truth);
+  }
+}
+
 TEST_F(OwnReferences, AGyroAloneTellsRatios) {
   RobotBag bag;
   bag.vision = false;

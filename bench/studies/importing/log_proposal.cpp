@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "base/angle.hpp"
 #include "base/text.hpp"
@@ -128,6 +129,7 @@ class Proposer {
       MapJson json = of(role);
       json["unit"] = text_or_null(role.unit);
       if (role.unit == "count") json["per_turn"] = stand_in ? MapJson(kStandInCounts) : MapJson(nullptr);
+      if (const auto bits = bits_.find(role.field); bits != bits_.end()) json["bits"] = bits->second;
       if (role.kind == "travel") json["radius"] = stand_in ? MapJson(1.0) : MapJson(nullptr);
       if (const int sign = signs_.at(role.which); sign < 0) json["sign"] = sign;
       const char* head = role.kind == "speed"    ? "wheel_speed"
@@ -144,6 +146,7 @@ class Proposer {
     for (const Role& role : roles_.reference) {
       MapJson json = of(role);
       json["unit"] = role.unit;
+      if ((role.which == "y" && mirrored_) || (role.which == "heading" && z_down_)) json["sign"] = -1;
       all["reference." + role.which] = std::move(json);
     }
     for (const Role& role : roles_.gyro) {
@@ -180,9 +183,35 @@ class Proposer {
     return all;
   }
 
+  // The first drive, by the map as it stands.
+  std::pair<LogMap, LogCurves> first_drive() const {
+    LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
+    LogCurves read = read_curves(own, group_logs(own, logs_).front(), options_, stop_);
+    return {std::move(own), std::move(read)};
+  }
+
+  // Counters that run over jump by 2^16 or 2^32 where they otherwise step by little.
+  bool find_counters(const LogMap& own, const LogCurves& read) {
+    constexpr double kCount = 2 * kPi / kStandInCounts;
+    std::optional<CounterJumps> found;
+    for (const log_import::Curve& signal : read.signals)
+      if (const auto jumps = counter_jumps(signal, kCount)) found = jumps;
+    if (!found) return false;
+    for (std::size_t i = 0; i < own.signals.size(); ++i) {
+      const log_import::MappedSignal& signal = own.signals[i];
+      if (signal.format.unit != "count" || signal.format.kind != SignalFormat::Kind::Position) continue;
+      const auto jumps = counter_jumps(read.signals[i], kCount);
+      if (jumps) found = jumps;
+      bits_[signal.at.field] = found->bits;
+      say(fmt::format("{}: a counter of {} bits, which runs over ({} jumps): \"bits\": {}",
+                      signal.format.name, found->bits, jumps ? jumps->count : 0, found->bits));
+    }
+    return !bits_.empty();
+  }
+
   void look_at_drives() {
-    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
-    const LogCurves read = read_curves(own, group_logs(own, logs_).front(), options_, stop_);
+    auto [own, read] = first_drive();
+    if (find_counters(own, read)) std::tie(own, read) = first_drive();
     const bool clocks = roles_.wheels.front().source != roles_.reference.front().source;
     std::optional<ClockOffset> offset = clock_offset(own, read);
     if (roles_.kinematics == "differential") {
@@ -209,9 +238,9 @@ class Proposer {
 
   // Which way the wheels turn the robot, by the gyro.
   void look_at_turns() {
+    auto [own, read] = first_drive();
+    if (find_counters(own, read)) std::tie(own, read) = first_drive();
     if (roles_.kinematics != "differential") return;
-    const LogMap own = log_import::parse_log_map(map(true).dump(), "proposal");
-    const LogCurves read = read_curves(own, group_logs(own, logs_).front(), options_, stop_);
     const std::optional<TurnEvidence> found = turn_evidence(read);
     if (!found) return say("no turns that wheels and gyro share: signs not checked");
     std::map<std::string, double> side;
@@ -231,9 +260,72 @@ class Proposer {
                       signs_[which] < 0 ? '-' : '+', 100 * found->explained));
   }
 
+  // A frame whose y grows to the right, or whose x and y are exchanged, explains nothing until it is turned
+  // over.
+  void unmirror(const LogCurves& read, double offset, std::vector<WheelEvidence>& found) {
+    constexpr double kPoor = 0.93, kGood = 0.97;  // of what is explained
+    const auto worst = [](const std::vector<WheelEvidence>& all) {
+      double least = 1;
+      for (const WheelEvidence& e : all) least = std::min(least, e.explained);
+      return least;
+    };
+    if (worst(found) > kPoor) return;
+    LogCurves other = read;
+    for (double& v : other.y.value) v = -v;
+    std::vector<WheelEvidence> turned = wheel_evidence(other, offset);
+    if (turned.size() != found.size() || worst(turned) < kGood) return;
+    found = std::move(turned);
+    mirrored_ = true;
+    say("the reference's frame is mirrored (y grows to the right, or x and y are exchanged): y is taken with "
+        "sign -");
+  }
+
+  // Whether a gyro in the log says the opposite of the reference's turns.
+  static bool turns_against_gyro(const LogCurves& read, double offset) {
+    constexpr double kStep = 0.1, kSure = 0.8;
+    for (const log_import::Curve& gyro : read.others) {
+      if (gyro.name != "gyro.z") continue;
+      double both = 0, own = 0, other = 0;
+      std::size_t h = 0, g = 0;
+      for (double t = gyro.time.front(); t + kStep < gyro.time.back(); t += kStep) {
+        const double before = read.heading.at(t + offset, h);
+        const double turned = (read.heading.at(t + kStep + offset, h) - before) / kStep;
+        const double rate = gyro.at(t + kStep / 2, g);
+        both += turned * rate, own += turned * turned, other += rate * rate;
+      }
+      return both < -kSure * std::sqrt(own * other);
+    }
+    return false;
+  }
+
+  // Whether the wheels' names are right, in a frame that looks ahead or back.
+  static bool as_named(const LogCurves& read, const std::vector<WheelEvidence>& found) {
+    const bool left_first = read.signals.front().name.ends_with("left");
+    const WheelEvidence &left = found[left_first ? 0 : 1], &right = found[left_first ? 1 : 0];
+    const bool forward = left.along > 0 && right.along > 0, back = left.along < 0 && right.along < 0;
+    return (forward && left.side() < right.side()) || (back && left.side() > right.side());
+  }
+
+  // Wheels that are wrong by the reference and right by the gyro: the reference's z points down.
+  void turn_over(const LogCurves& read, double offset, std::vector<WheelEvidence>& found) {
+    if (roles_.by_place || mirrored_ || as_named(read, found) || !turns_against_gyro(read, offset)) return;
+    LogCurves other = read;
+    for (double& v : other.y.value) v = -v;
+    for (double& v : other.heading.value) v = -v;
+    const std::vector<WheelEvidence> turned = wheel_evidence(other, offset);
+    if (turned.size() != found.size() || !as_named(other, turned)) return;
+    found = turned;
+    mirrored_ = z_down_ = true;
+    say("the reference turns against gyro and wheels: its frame is mirrored (z down): y and heading are "
+        "taken with "
+        "sign -");
+  }
+
   void weigh_pair(const LogCurves& read, double offset) {
     std::vector<WheelEvidence> found = wheel_evidence(read, offset);
     if (found.size() != roles_.wheels.size()) return;
+    unmirror(read, offset, found);
+    turn_over(read, offset, found);
     // The curves stand in the robot's order, the roles in the log's.
     std::map<std::string, WheelEvidence> by_side;
     const auto sort_sides = [&] {
@@ -280,7 +372,8 @@ class Proposer {
   std::map<std::size_t, std::string> names_;
   std::map<std::string, int> signs_;
   std::vector<std::string> unused_;
-  bool offset_ = false, mount_ = false, headings_ = false;
+  std::map<std::string, int> bits_;  // of counters, by field
+  bool offset_ = false, mount_ = false, headings_ = false, mirrored_ = false, z_down_ = false;
   int gyro_sign_ = 1;
 };
 

@@ -75,6 +75,31 @@ std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, d
   return all;
 }
 
+std::optional<CounterJumps> counter_jumps(const log_import::Curve& curve, double count) {
+  const std::vector<double>& v = curve.value;
+  const auto [low, high] = std::minmax_element(v.begin(), v.end());
+  for (int bits = 8; bits <= 32; ++bits) {
+    const double turn = std::pow(2.0, bits);
+    if ((*high - *low) / count > turn) continue;
+    CounterJumps jumps{bits, 0};
+    double most = 0, left = 0;  // of all other steps; of what is left of the jumps
+    for (std::size_t k = 1; k < v.size(); ++k) {
+      const double step = std::abs(v[k] - v[k - 1]) / count;
+      if (step > turn / 2) {
+        left = std::max(left, std::abs(turn - step));
+        ++jumps.count;
+      } else {
+        most = std::max(most, step);
+      }
+    }
+    // Steps so long that nobody could tell forwards from backwards are none, nor is a counter that is set to
+    // 0.
+    const bool runs_over = jumps.count > 0 && most < turn / 8 && left < 1.5 * most + 2;
+    return runs_over ? std::optional(jumps) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 std::optional<TurnEvidence> turn_evidence(const log_import::LogCurves& curves) {
   double from = curves.heading.time.front(), to = curves.heading.time.back();
   for (const log_import::Curve& signal : curves.signals) {

@@ -23,6 +23,15 @@ struct WheelEvidence {
 // or the reference does not both drive and turn.
 std::vector<WheelEvidence> wheel_evidence(const log_import::LogCurves& curves, double offset);
 
+// A counter that runs over, as raw counts: jumps of 2^bits, 8, 16, 24 or 32 bits, less what it steps
+// otherwise.
+struct CounterJumps {
+  int bits = 0;
+  int count = 0;  // jumps
+};
+// Of a curve in units of `count` each. Nothing where it does not jump, or by something else.
+std::optional<CounterJumps> counter_jumps(const log_import::Curve& curve, double count);
+
 // omega = sum share_i rate_i by least squares, over differences of 0.2 s.
 struct TurnEvidence {
   std::vector<double> share;  // of each signal: radius over track, negative on the left

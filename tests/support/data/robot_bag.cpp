@@ -87,6 +87,7 @@ WrittenLog RobotBag::messages(RosEncoding encoding) const {
       Pose at{seen.x + c * mount_x - s * mount_y + pose_noise * normal(random),
               seen.y + s * mount_x + c * mount_y + pose_noise * normal(random),
               yaw + mount_yaw + pose_noise * normal(random)};
+      if (z_down) at = {at.x, -at.y, -at.yaw};
       add(3, stamp, odometry(encoding, stamp + std::llround(clock_ahead_s * 1e9), "camera", at));
     }
     left += (v - w * kTrack / 2) / kLeft * kStep;

@@ -14,6 +14,7 @@ struct RobotBag {
   bool vision = true;
   double gyro_bias = 0.004;  // rad/s
   int gyro_sign = 1;
+  bool z_down = false;  // the camera's frame: y to the right, headings clockwise
   // The camera: its clock, its place on the robot, its drift and noise of poses.
   double clock_ahead_s = 0.083;
   double mount_x = 0.35, mount_y = 0.06, mount_yaw = 2.6;  // m, rad
