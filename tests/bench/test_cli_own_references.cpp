@@ -128,6 +128,10 @@ TEST_F(OwnReferences, AGyroAloneTellsRatios) {
   const json set = json::parse(content(folder_ / "out/set.json"));
   EXPECT_EQ(set.at("reference"), "headings");
   EXPECT_THAT(set.at("notes").dump(), HasSubstr("0.0040"));  // the bias
+  const ProcessResult classical = run_bench({"--solver=lm", "--classical=censi,antonelli", "--format=json",
+                                             "--data=" + (folder_ / "out/set.json").string()});
+  EXPECT_EQ(classical.exit_code, 0) << classical.err;
+  EXPECT_THAT(classical.out, HasSubstr("the reference has headings and no positions"));
   // What asks for positions is refused.
   const ProcessResult mount =
       run_bench({"--solver=lm", "--mount", "--data=" + (folder_ / "out/set.json").string()});
