@@ -13,6 +13,7 @@
 #include "base/files.hpp"
 #include "base/random.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/cells.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/fusion/fusable_recordings.hpp"
@@ -180,7 +181,10 @@ Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(study.data, kernel_in_force(study.kernel));
   const FusableRecordings fusable = fusable_recordings(loaded);
-  const std::vector<ParameterSet> sets = read_parameter_list(loaded, {study.parameters}, watcher);
+  std::vector<ParameterSet> sets = read_judged_parameters(loaded, {study.parameters}, watcher);
+  // Beside a folder's row stand the nominal parameters, which nobody asked for here.
+  if (sets.size() == 2 && sets.front().label == "nominal" && study.parameters.find(',') == std::string::npos)
+    sets.erase(sets.begin());
   if (sets.size() != 1)
     throw std::invalid_argument(
         fmt::format("--parameters={}: {} parameter sets, expected one", study.parameters, sets.size()));

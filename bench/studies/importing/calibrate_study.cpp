@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "base/files.hpp"
@@ -54,6 +55,29 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalo
   return runs;
 }
 
+// The thesis' robot begins its drives at (0, 0); a room's frame lies anywhere. Cameras move along.
+void begin_at_origin(ImportedLogs& imported) {
+  if (imported.dataset.robot.kinematics != "4wis4wid") return;
+  constexpr double kThere = 1e-9;  // m
+  double farthest = 0;
+  for (Recording& r : imported.dataset.recordings) {
+    if (r.reference.x.empty() || (!r.reference.sample.empty() && r.reference.sample.front() != 0)) continue;
+    const double x = r.reference.x.front(), y = r.reference.y.front();
+    farthest = std::max(farthest, std::hypot(x, y));
+    for (double& v : r.reference.x) v -= x;
+    for (double& v : r.reference.y) v -= y;
+    if (!imported.sensors.contains(r.id)) continue;
+    for (SensorRows& rows : imported.sensors.at(r.id)) {
+      if (rows.name != "camera") continue;
+      for (double& v : rows.values[0]) v -= x;
+      for (double& v : rows.values[1]) v -= y;
+    }
+  }
+  if (farthest > kThere)
+    imported.dataset.notes.push_back(
+        fmt::format("every drive moved to begin at x = y = 0, by up to {:.3g} m", farthest));
+}
+
 // What gyro and camera measured, beside the set, and the file that names them for `bench fuse`.
 void add_sensors(const ImportedLogs& imported, const fs::path& set, FileTransaction& files, Watcher& watcher,
                  Calibrated& out) {
@@ -101,6 +125,7 @@ Calibrated calibrate_logs(const CalibrateStudy& study, const Catalogue& catalogu
     const std::string map = find_map(study, watcher, stop);
     ImportedLogs imported =
         import_logs({study.logs, map, study.out / "map.json", study.options}, watcher, stop);
+    begin_at_origin(imported);
     for (const std::string& line : imported.report) watcher.note(line);
     for (const std::string& line : imported.dataset.notes) watcher.note(line);
     watcher.results_begin();
