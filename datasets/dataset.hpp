@@ -3,10 +3,12 @@
 // inline.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/files.hpp"
@@ -40,12 +42,24 @@ struct NamedParameters {
   std::vector<double> values;  // in the order of Robot::parameters
 };
 
+// What the references of all recordings are.
+enum class ReferenceKind {
+  Poses,     // where the robot was
+  Drifting,  // another odometry: its errors grow with the way
+  Headings  // theta alone was measured, by a gyro; x, y follow it and the wheels' nominal sizes, for pictures
+};
+inline constexpr std::array<std::string_view, 3> kReferenceKindNames = {"poses", "drifting", "headings"};
+inline std::string_view name_of(ReferenceKind kind) {
+  return kReferenceKindNames[static_cast<std::size_t>(kind)];
+}
+
 struct Dataset {
   std::string name;
   std::string description;
   Robot robot;
   std::vector<Trajectory> trajectories;  // in table order
   std::vector<Recording> recordings;
+  ReferenceKind reference = ReferenceKind::Poses;
   std::vector<NamedParameters> known_parameters;
   Provenance provenance;
   // What the import repaired, counted: "3 stamps moved to 1 us after their predecessor in recording

@@ -92,7 +92,7 @@ bench/studies/calibration     datasets/ problems/ solvers/ reports/ bench/catalo
 bench/studies/campaign        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
-bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/inspection
+bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/inspection
 bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting bench/studies/trust
 bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/simulation      datasets/ problems/ reports/ bench/catalogue bench/studies

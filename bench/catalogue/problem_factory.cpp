@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "bench/catalogue/loss_choice.hpp"
 #include "datasets/native/columns.hpp"
 #include "datasets/native/robot_json.hpp"
+#include "problems/calibration/classical/classical.hpp"
 
 namespace odobench {
 
@@ -86,7 +88,61 @@ std::string variant_of(const CalibrationProblem& problem, const Robot& robot,
   return "[" + text + "]" + left;
 }
 
+void remark_on_reference(ReferenceKind kind, const CalibrationChoice& asked, const CalibrationChoice& choice,
+                         std::vector<std::string>& remarks) {
+  if (kind == ReferenceKind::Drifting && !asked.cost)
+    remarks.push_back(fmt::format("the reference drifts: --cost=segments, of {:g} m", choice.distance));
+  if (kind == ReferenceKind::Headings)
+    remarks.push_back(
+        "the reference is a gyro: headings alone are compared, which tell ratios of lengths and no length; "
+        "errors of positions are those to the wheels' own path along the gyro's headings");
+}
+
+// Of a two-wheeled robot with a reference that drifts: the closed form that needs no start of its own, and
+// lands near the optimum of segments (docs/references.md). Elsewhere nothing.
+void start_by_pieces(LoadedProblem& loaded) {
+  const CalibrationOptions& options = loaded.calibration->options();
+  if (loaded.dataset->reference != ReferenceKind::Drifting || options.cost != CostKind::Segments) return;
+  const std::string name = options.mount ? "censi_mount" : "censi";
+  const classical::Method& method = classical::method(name);
+  classical::Options by;
+  by.distance = options.distance;
+  const std::vector<Recording>& recordings = loaded.calibration->recordings();
+  if (!method.why_not(loaded.dataset->robot, recordings, by).empty()) return;
+  Vector z = loaded.problem.start();
+  try {
+    const classical::Result found = method.run(loaded.dataset->robot, recordings, by);
+    z.head(found.z.size()) = found.z;
+    if (options.mount) z.tail<3>() = found.mount;
+  } catch (const std::invalid_argument&) {
+    return;
+  }
+  if (!z.allFinite()) return;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const ParameterInfo& p = loaded.problem.parameters()[static_cast<std::size_t>(i)];
+    z[i] = std::clamp(z[i], p.lower, p.upper);
+  }
+  loaded.start_name = name;
+  loaded.start = std::move(z);
+  loaded.remarks.push_back(fmt::format("start: {}, the closed form piece by piece", name));
+}
+
 }  // namespace
+
+CalibrationChoice choice_for(ReferenceKind kind, CalibrationChoice choice) {
+  if (kind == ReferenceKind::Poses) return choice;
+  if (kind == ReferenceKind::Headings) {
+    const bool weighted =
+        choice.estimate_weights || choice.position_weight != 1 || choice.heading_weight != 1;
+    if (choice.cost == CostKind::Optiodom || weighted || choice.mount || choice.loss.robust())
+      throw std::invalid_argument(
+          "the reference is a gyro's headings: no --cost=optiodom, --weights, --mount, --loss, which need "
+          "positions");
+    choice.position_weight = 0;
+  }
+  if (!choice.cost) choice.cost = CostKind::Segments;
+  return choice;
+}
 
 CalibrationChoice screened() {
   CalibrationChoice choice;
@@ -119,13 +175,15 @@ std::vector<Recording> LoadedProblem::all_recordings() const {
 }
 
 LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
-                               const CalibrationChoice& choice) {
-  require_consistent(choice);
+                               const CalibrationChoice& asked) {
+  require_consistent(asked);
   const std::filesystem::path path = data.empty() ? demo_set() : std::filesystem::path(data);
   Dataset dataset = load_dataset(path);
   require_range(path.string(), dataset.recordings, fits_schema_1(dataset.robot) ? 1 : 2);
+  const CalibrationChoice choice = choice_for(dataset.reference, asked);
   if (choice.twist) dataset.robot.table.rule = *choice.twist;
   std::vector<std::string> remarks;
+  remark_on_reference(dataset.reference, asked, choice, remarks);
   std::shared_ptr<const CalibrationProblem> model, aside;
   LeftOut out;
   LossStart start;
@@ -157,6 +215,7 @@ LoadedProblem load_calibration(const std::string& data, InstructionSet kernel,
   loaded.aside = std::move(aside);
   loaded.start_name = std::move(start.name);
   loaded.start = std::move(start.z);
+  if (loaded.start_name.empty()) start_by_pieces(loaded);
   return loaded;
 }
 

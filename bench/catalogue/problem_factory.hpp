@@ -64,6 +64,11 @@ struct CalibrationChoice {
   std::optional<std::vector<std::string>> model;  // none: as the set has it
 };
 
+// What the reference's kind leaves: segments of another odometry unless a cost is asked for; headings alone
+// (position weight 0, of segments unless a cost is asked for) of a gyro. Throws std::invalid_argument for
+// costs, weights and a mount that a gyro's headings do not have.
+CalibrationChoice choice_for(ReferenceKind kind, CalibrationChoice choice);
+
 // As it is without options, with screening.
 CalibrationChoice screened();
 

@@ -158,14 +158,4 @@ void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets) {
   sets.push_back(std::move(set));
 }
 
-std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
-                                              const std::vector<std::string>& lists, Watcher& watcher) {
-  const ParameterNames names = parameter_names(loaded);
-  std::vector<ParameterSet> sets;
-  for (const std::string& source : split_sources(lists))
-    for (ParameterSet& set : read_parameters(names, source)) add_parameter_set(std::move(set), sets);
-  for (const ParameterSet& set : sets) warn_outside(loaded, set, watcher);
-  return sets;
-}
-
 }  // namespace odobench

@@ -37,10 +37,6 @@ void warn_outside(const LoadedProblem& loaded, const ParameterSet& set, Watcher&
 // Throws std::invalid_argument when there is one of this label already.
 void add_parameter_set(ParameterSet set, std::vector<ParameterSet>& sets);
 
-// Every entry of --parameters, comma lists taken apart; none: "nominal". Warns about parameters outside the
-// box and throws std::invalid_argument when two sets have one label.
-std::vector<ParameterSet> read_parameter_list(const LoadedProblem& loaded,
-                                              const std::vector<std::string>& lists, Watcher& watcher);
 // The entries of comma lists of such, except where a file has a comma in its name; "nominal" for none.
 std::vector<std::string> split_sources(const std::vector<std::string>& lists);
 

@@ -40,6 +40,7 @@ TrustRecord trust_record(const Trust& trust) {
     record.parameters.push_back({p.name, p.unit, p.value, interval_record(p.interval)});
   for (const DriveError& d : trust.drives)
     record.drives.push_back({d.drive, d.what, d.unit, d.scatter, interval_record(d.interval)});
+  record.ratios_only = trust.ratios_only;
   record.remarks = trust.map_remarks;
   record.sentences = trust.sentences;
   return record;

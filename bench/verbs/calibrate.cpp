@@ -108,6 +108,9 @@ ExitCode calibrate_command(const CalibrateOptions& options, const Catalogue& cat
   note(fmt::format(
       "next: bench report {0} shows all tables; bench export {0} --to=ros2 writes a controller's parameters",
       done.results.string()));
+  if (!done.sensors.empty())
+    note(fmt::format("next: bench fuse --data={} --sensors={} --parameters=nominal,{}:lm --filter=none,ekf",
+                     done.set.string(), done.sensors.string(), done.results.string()));
   const bool any = std::any_of(done.records.begin(), done.records.end(),
                                [](const RunRecord& r) { return r.kind == "run" && r.cost; });
   return any ? printed : ExitCode::CheckFailed;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -117,6 +118,19 @@ std::string which_of(const Words& words) {
   return number_of(words);
 }
 
+// "FL" of front_left_wheel and of fl.
+std::string quadrant_of(const Words& words) {
+  static const std::map<std::string, std::string> kShort = {{"fl", "FL"}, {"lf", "FL"}, {"fr", "FR"},
+                                                            {"rf", "FR"}, {"rl", "RL"}, {"bl", "RL"},
+                                                            {"lr", "RL"}, {"rr", "RR"}, {"br", "RR"}};
+  for (const std::string& word : words)
+    if (const auto found = kShort.find(word); found != kShort.end()) return found->second;
+  const bool front = has(words, {"front", "vorne", "vorn"}), rear = has(words, {"rear", "back", "hinten"});
+  const std::string side = which_of(words);
+  if (front == rear || (side != "left" && side != "right")) return "";
+  return std::string(front ? "F" : "R") + (side == "left" ? "L" : "R");
+}
+
 Meaning meaning_of(const Words& words) {
   const std::string last = words.empty() ? "" : words.back();
   if (has(words, {"time", "stamp", "timestamp", "t", "zeit", "ts", "zeit", "temps", "tiempo"}))
@@ -126,7 +140,7 @@ Meaning meaning_of(const Words& words) {
   if (last == "x" || last == "px") return Meaning::X;
   if (last == "y" || last == "py") return Meaning::Y;
   const bool wheel = has(words, {"wheel", "w", "enc", "encoder", "traction", "drive", "motor", "omega"});
-  if (wheel || !which_of(words).empty()) return Meaning::Wheel;
+  if (wheel || !which_of(words).empty() || !quadrant_of(words).empty()) return Meaning::Wheel;
   return Meaning::Unknown;
 }
 
@@ -146,6 +160,7 @@ ColumnName column_name(std::string_view name) {
   column.odometry = has(words, {"odom", "odo", "odometry", "est", "ekf"});
   if (column.meaning == Meaning::Wheel || column.meaning == Meaning::Steering) {
     column.which = which_of(words);
+    column.quadrant = quadrant_of(words);
     if (column.unit.empty() && has(words, {"enc", "encoder"})) column.unit = "count";
     if (column.unit == "m/s") column.unit.clear();  // of the rim: no unit of the map
   }

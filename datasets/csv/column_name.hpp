@@ -14,6 +14,7 @@ struct ColumnName {
   Meaning meaning = Meaning::Unknown;
   std::string unit;       // as the map writes it: "rad/s", "deg", "mm", "ns", "count"; "" where it says none
   std::string which;      // of a wheel: "left", "right", "1"; "" where there is one
+  std::string quadrant;   // of a wheel that names it: "FL" of front_left, "RR" of rr; else ""
   bool odometry = false;  // a pose of the robot's own
 };
 

@@ -33,11 +33,19 @@ int check_schema(const JsonNode& root) {
                  fmt::format("version 1 or {}", kDatasetSchemaVersion));
   if (version.integer() == 1)
     root.allow_only({"schema", "schema_version", "name", "description", "robot", "trajectories", "recordings",
-                     "known_parameters", "provenance", "notes"});
+                     "reference", "known_parameters", "provenance", "notes"});
   else
     root.allow_only({"schema", "schema_version", "name", "description", "robot", "signals", "trajectories",
-                     "recordings", "known_parameters", "provenance", "notes"});
+                     "recordings", "reference", "known_parameters", "provenance", "notes"});
   return static_cast<int>(version.integer());
+}
+
+ReferenceKind read_reference_kind(const JsonNode& node) {
+  const std::string name = node.text();
+  const auto found = std::find(kReferenceKindNames.begin(), kReferenceKindNames.end(), name);
+  if (found == kReferenceKindNames.end())
+    node.fail('"' + shown(name) + '"', "\"poses\", \"drifting\" or \"headings\"");
+  return static_cast<ReferenceKind>(found - kReferenceKindNames.begin());
 }
 
 // What a set says about the columns of its recordings.
@@ -199,6 +207,7 @@ Dataset load_dataset(const fs::path& set_json) {
   for (const JsonNode& t : root.at("trajectories").elements()) d.trajectories.push_back(read_trajectory(t));
   const std::vector<JsonNode> recordings = root.at("recordings").elements();
   for (const JsonNode& r : recordings) d.recordings.push_back(read_recording_head(r, format));
+  if (root.has("reference")) d.reference = read_reference_kind(root.at("reference"));
   if (root.has("known_parameters"))
     for (const JsonNode& k : root.at("known_parameters").elements())
       d.known_parameters.push_back(read_known_parameters(k, d.robot));

@@ -167,6 +167,7 @@ void add_dataset(const Dataset& d, const fs::path& set_json, FileTransaction& fi
                {"description", d.description},
                {"robot", robot_json(d.robot, schema)}};
   if (schema > 1) root["signals"] = signals_json(d);
+  if (d.reference != ReferenceKind::Poses) root["reference"] = std::string(name_of(d.reference));
   root["trajectories"] = std::move(trajectories);
   root["known_parameters"] = known_parameters_json(d);
   root["provenance"] = provenance_json(d.provenance);

@@ -82,10 +82,14 @@ std::vector<std::string> add_sensor_files(const SetSensors& sensors, const std::
       {"description", "measured, of the logs that the set was made of; deviations are first guesses"},
       {"wheels", {{"sigma_velocity", 0.01}, {"sigma_yaw_rate", 0.02}}},
       {"sensors", listed}};
-  const std::filesystem::path file = set_json.parent_path() / (stem + "_sensors.json");
+  const std::filesystem::path file = sensors_file_of(set_json);
   files.add(file, root.dump(2) + "\n");
   remarks.push_back(fmt::format("{}: the sensors for bench fuse --sensors", file.string()));
   return remarks;
+}
+
+std::filesystem::path sensors_file_of(const std::filesystem::path& set_json) {
+  return set_json.parent_path() / (set_json.stem().string() + "_sensors.json");
 }
 
 }  // namespace odobench

@@ -17,4 +17,7 @@ namespace odobench {
 std::vector<std::string> add_sensor_files(const SetSensors& sensors, const std::vector<std::string>& ids,
                                           const std::filesystem::path& set_json, FileTransaction& files);
 
+// STEM_sensors.json beside the set.
+std::filesystem::path sensors_file_of(const std::filesystem::path& set_json);
+
 }  // namespace odobench

@@ -26,6 +26,7 @@ constexpr std::array kKinds = {
     Kind{"heading_degrees", Error, true, "multiply theta by pi/180"},
     Kind{"heading_sign", Error, true, "negate theta"},
     Kind{"position_unit", Error, true, "convert x and y to metres"},
+    Kind{"frame_mirrored", Error, true, "make the frame right-handed: x, y and theta counter-clockwise"},
     Kind{"steering_degrees", Error, true, "multiply the steering angles by pi/180"},
     Kind{"wheel_order", Error, true, "put the columns in the order of the robot's wheels"},
     Kind{"steering_sign", Error, true, "negate the steering angles"},

@@ -16,6 +16,8 @@ namespace {
 constexpr double kFits = 0.06;  // no explanation is looked for below it
 constexpr double kExplains = 1.0 / 3;
 constexpr double kBackwards = -0.3;
+constexpr double kClearly = 0.9;  // of a score: less is a better explanation, more a like one
+constexpr double kInches = 1 / 0.0254;
 constexpr std::size_t kMostExchanged = 6;  // 719 permutations
 
 // A fault, how well the data fit without it, and how to take it out of a drive.
@@ -42,6 +44,19 @@ void refresh(const RobotView& robot, Drive& d) {
   update_wheels(robot, d);
 }
 
+// E and score where this is done to every drive first.
+SlopeFit fit_after(const RobotView& robot, const DriveSet& drives, void (*apply)(Drive&)) {
+  Sums sums(robot.wheels.size());
+  drives.visit([&](std::size_t, const Drive& drive) {
+    Drive tried = drive;
+    apply(tried);
+    refresh(robot, tried);
+    update_sums(robot, tried);
+    sums += tried.sums;
+  });
+  return slope_fit(robot, sums);
+}
+
 // Units and signs of whole columns: every candidate is tried on a copy.
 void try_units(const RobotView& robot, const DriveSet& drives, const SlopeFit& now,
                std::optional<Explanation>& best) {
@@ -59,20 +74,14 @@ void try_units(const RobotView& robot, const DriveSet& drives, const SlopeFit& n
        [](Drive& d) { d.x /= 1000, d.y /= 1000; }},
       {"position_unit", "x and y look like centimetres (factor 100)", 100,
        [](Drive& d) { d.x /= 100, d.y /= 100; }},
+      {"position_unit", "x and y look like inches (factor 39.37)", kInches,
+       [](Drive& d) { d.x /= kInches, d.y /= kInches; }},
       {"steering_degrees", "steering angles look like degrees (factor 180/pi)", 1 / kDegree,
        [](Drive& d) { d.angle *= kDegree; }},
   };
   for (const Unit& unit : kUnits) {
     if (std::string_view(unit.kind) == "steering_degrees" && robot.steerings() == 0) continue;
-    Sums sums(robot.wheels.size());
-    drives.visit([&](std::size_t, const Drive& drive) {
-      Drive tried = drive;
-      unit.apply(tried);
-      refresh(robot, tried);
-      update_sums(robot, tried);
-      sums += tried.sums;
-    });
-    const SlopeFit fit = slope_fit(robot, sums);
+    const SlopeFit fit = fit_after(robot, drives, unit.apply);
     std::map<std::string, double> figures = both_misfits(now, fit);
     figures["factor"] = unit.factor;
     keep_better(best, {fit, {finding_of(unit.kind, unit.text + change(now, fit), figures)}, unit.apply});
@@ -200,6 +209,37 @@ void try_steering_signs(const RobotView& robot, const DriveSet& drives, const Su
   }
 }
 
+// Left-handed frames. Wheels exchanged or steering that counts the other way may be as good an explanation:
+// these say it then, too.
+void try_mirrors(const RobotView& robot, const DriveSet& drives, const SlopeFit& now,
+                 std::optional<Explanation>& best) {
+  struct Mirror {
+    int which;  // as mend.cpp undoes it
+    const char* text;
+    void (*apply)(Drive&);
+  };
+  static const Mirror kMirrors[] = {
+      {1, "y looks mirrored: it grows to the right, while theta counts to the left",
+       [](Drive& d) { d.y *= -1; }},
+      {2, "x and y look exchanged (or theta counts clockwise from y, as a compass does)",
+       [](Drive& d) { d.x.swap(d.y); }},
+      {3, "the frame looks mirrored: y grows to the right and theta counts clockwise (z down?)",
+       [](Drive& d) { d.y *= -1, d.theta *= -1; }},
+  };
+  for (const Mirror& mirror : kMirrors) {
+    const SlopeFit fit = fit_after(robot, drives, mirror.apply);
+    if (best && fit.score > kClearly * best->fit.score) {
+      if (mirror.which == 3 && fit.score < best->fit.score / kClearly)
+        for (Finding& f : best->findings) f.message += "; or the frame is mirrored, y to the right";
+      continue;
+    }
+    std::map<std::string, double> figures = both_misfits(now, fit);
+    figures["mirror"] = mirror.which;
+    best = Explanation{
+        fit, {finding_of("frame_mirrored", mirror.text + change(now, fit), figures)}, mirror.apply};
+  }
+}
+
 void check_backwards(const RobotView& robot, DriveSet& drives, std::vector<Finding>& found) {
   const SlopeFit fit = slope_fit(robot, sums_of(robot, drives));
   std::vector<double> sizes;
@@ -274,6 +314,7 @@ std::vector<Finding> check_hypotheses(const RobotView& robot, DriveSet& drives) 
     try_units(robot, drives, now, best);
     try_orders(robot, drives, sums, now, best);
     try_steering_signs(robot, drives, sums, now, best);
+    try_mirrors(robot, drives, now, best);
     if (best && best->fit.misfit < kExplains * now.misfit) {
       found = best->findings;
       drives.correct([&robot, correct = best->correct](Drive& d) {

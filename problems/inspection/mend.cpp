@@ -166,6 +166,13 @@ double figure(const Finding& f, const char* name) {
   return found == f.figures.end() ? 0 : found->second;
 }
 
+// The mirrors of hypotheses.cpp.
+void unmirror(Reference& reference, int which) {
+  if (which == 2) return reference.x.swap(reference.y);
+  scale(reference.y, -1);
+  if (which == 3) scale(reference.theta, -1);
+}
+
 void for_signals(Dataset& set, bool drives, double factor) {
   for (const std::string& name : signal_names(set.robot, drives))
     for (Recording& r : set.recordings) scale_signal(r, name, factor);
@@ -208,6 +215,7 @@ void mend_set(Dataset& set, const Finding& f) {
       scale(r.reference.x, 1 / figure(f, "factor"));
       scale(r.reference.y, 1 / figure(f, "factor"));
     }
+    if (f.kind == "frame_mirrored") unmirror(r.reference, static_cast<int>(figure(f, "mirror")));
     if (f.kind == "wheel_order") reorder(set.robot, f, r);
     if (f.kind == "steering_sign") scale_signal(r, wheel->steering, -1);
     if (f.kind == "wheel_reversed")

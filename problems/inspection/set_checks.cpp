@@ -19,7 +19,8 @@ constexpr double kFactor = 1.12;  // what nominal values are not off by
 constexpr double kNamed = 0.15;   // of a logarithm
 constexpr double kAngle = 1 * kDegree;
 constexpr double kSpread = 0.6 * kDegree;
-constexpr double kLever = 0.01;       // m
+constexpr double kLever = 0.01;  // m
+constexpr double kInches = 1 / 0.0254;
 constexpr Index kFewestSamples = 10;  // that say something
 
 enum class Motion { Straight, Turning, Other };
@@ -121,13 +122,13 @@ void correct_factor(const RobotView& robot, DriveSet& drives, double kv, bool st
   });
 }
 
-// 1000 or 100 where turns fit and distances are as many times too long, else 1: lines may outweigh turns so
-// far that the misfit does not show it.
+// 1000, 100 or 39.37 where turns fit and distances are as many times too long, else 1: lines may outweigh
+// turns so far that the misfit does not show it.
 double position_unit(const RobotView& robot, const TwistSums& sums, double kv) {
   constexpr double kTurns = 1e-3;  // of the squares
   if (!(robot.distance * robot.distance * sums.any_own > kTurns * sums.path)) return 1;
   if (!(std::abs(std::log(std::abs(sums.any_both / sums.any_own))) < kNamed)) return 1;
-  for (const double unit : {1000.0, 100.0})
+  for (const double unit : {1000.0, 100.0, kInches})
     if (std::abs(std::log(kv / unit)) < kNamed) return unit;
   return 1;
 }
@@ -135,9 +136,12 @@ double position_unit(const RobotView& robot, const TwistSums& sums, double kv) {
 Finding position_finding(double unit, double kv) {
   return finding_of(
       "position_unit",
-      fmt::format("x and y look like {} (factor {:.0f}): distances are {:.3g} times as long as the wheels "
+      fmt::format("x and y look like {} (factor {:.4g}): distances are {:.3g} times as long as the wheels "
                   "say while turns fit",
-                  unit == 1000 ? "millimetres" : "centimetres", unit, kv),
+                  unit == 1000  ? "millimetres"
+                  : unit == 100 ? "centimetres"
+                                : "inches",
+                  unit, kv),
       {{"factor", unit}});
 }
 
@@ -262,23 +266,57 @@ void correct_zeros(const RobotView& robot, DriveSet& drives, const Vector& angle
   });
 }
 
-void check_tracked_point(const RobotView& robot, DriveSet& drives, std::vector<Finding>& found) {
+struct Lever {
   double wx = 0, wy = 0, ww = 0, before = 0;
   Index samples = 0;
+  double x() const { return wx / ww; }
+  double y() const { return wy / ww; }
+  bool shows() const {
+    return samples >= kFewestSamples && ww > 0 && std::hypot(x(), y()) > kLever &&
+           (wx * wx + wy * wy) / ww > 0.5 * before;
+  }
+};
+
+void add_to(Lever& lever, const RobotView& robot, const Drive& d) {
+  for (Index k = 0; k < d.samples(); ++k) {
+    if (motion_of(robot, d, k) != Motion::Turning) continue;
+    const double ex = d.fx[k] - d.twist(k, 0), ey = d.fy[k] - d.twist(k, 1);
+    lever.wx += ey * d.w[k];
+    lever.wy -= ex * d.w[k];
+    lever.ww += d.w[k] * d.w[k];
+    lever.before += ex * ex + ey * ey;
+    ++lever.samples;
+  }
+}
+
+// Two wheels side by side of unequal radii roll off centre when they turn the robot, as if the tracked point
+// stood beside it: whether none of it is left with the radii that the wheels themselves show (their slopes).
+bool radii_explain(const RobotView& robot, const DriveSet& drives) {
+  std::vector<std::size_t> driven;
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i)
+    if (robot.wheels[i].driven()) driven.push_back(i);
+  if (driven.size() != 2 || robot.steerings() > 0 || !robot.free(WheelField::Radius)) return false;
+  Sums sums(robot.wheels.size());
+  drives.visit([&](std::size_t, const Drive& d) { sums += d.sums; });
+  const SlopeFit fit = slope_fit(robot, sums);
+  Lever left;
   drives.visit([&](std::size_t, const Drive& d) {
-    for (Index k = 0; k < d.samples(); ++k) {
-      if (motion_of(robot, d, k) != Motion::Turning) continue;
-      const double ex = d.fx[k] - d.twist(k, 0), ey = d.fy[k] - d.twist(k, 1);
-      wx += ey * d.w[k];
-      wy -= ex * d.w[k];
-      ww += d.w[k] * d.w[k];
-      before += ex * ex + ey * ey;
-      ++samples;
-    }
+    Drive tried = d;
+    for (const std::size_t i : driven)
+      if (const double k = fit.slope[static_cast<Index>(i)]; std::isfinite(k) && k > 0)
+        for (const auto& [column, weight] : robot.wheels[i].drives) tried.motion.col(column) *= k;
+    update_wheels(robot, tried);
+    update_twist(robot, tried);
+    add_to(left, robot, tried);
   });
-  if (samples < kFewestSamples || !(ww > 0)) return;
-  const double x = wx / ww, y = wy / ww, removed = (wx * wx + wy * wy) / ww;
-  if (!(std::hypot(x, y) > kLever) || !(removed > 0.5 * before)) return;
+  return !left.shows();
+}
+
+void check_tracked_point(const RobotView& robot, DriveSet& drives, std::vector<Finding>& found) {
+  Lever lever;
+  drives.visit([&](std::size_t, const Drive& d) { add_to(lever, robot, d); });
+  if (!lever.shows()) return;
+  const double x = lever.x(), y = lever.y();
   found.push_back(finding_of("tracked_point",
                              fmt::format("the tracked point looks displaced by ({:.1f}, {:.1f}) cm",
                                          tenths(100 * x), tenths(100 * y)),
@@ -290,7 +328,7 @@ void check_tracked_point(const RobotView& robot, DriveSet& drives, std::vector<F
       if (b.field == WheelField::X && !robot.from_origin)
         allowed = std::max(allowed, std::min(p.parameter.upper - p.parameter.nominal,
                                              p.parameter.nominal - p.parameter.lower));
-  if (std::hypot(x, y) < allowed) found.back().severity = Severity::Note;
+  if (std::hypot(x, y) < allowed || radii_explain(robot, drives)) found.back().severity = Severity::Note;
   drives.correct([x, y](Drive& d) {
     d.fx += y * d.w;
     d.fy -= x * d.w;

@@ -237,7 +237,10 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
   const RecordingCovariances covariances(s.scores.g, s.scores.h);
   trust.leverages = covariances.leverages();
   trust.parameters = parameter_intervals(s, covariances, trust.active);
-  for (TwistNumber& number : map.numbers) trust.determined.push_back({std::move(number), general});
+  trust.ratios_only = costs[0].options().position_weight == 0;
+  for (TwistNumber& number : map.numbers)
+    if (!trust.ratios_only || number.entry == TwistEntry::Turn || number.entry == TwistEntry::Swing)
+      trust.determined.push_back({std::move(number), general});
   if (general.refused == NoInterval::None) {
     trust.kind_test = kind_test(s.scores.g, s.scores.h, s.scores.kinds);
     if (trust.free == 0) {
@@ -255,6 +258,7 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
       }
       add_basic_drives(s, moves, trust);
       if (options.drives) add_kinds(s, moves, trust);
+      if (trust.ratios_only) std::erase_if(trust.drives, [](const DriveError& d) { return d.unit == "m"; });
     }
   }
   add_sentences(general, trust);

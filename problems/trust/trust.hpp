@@ -42,6 +42,9 @@ struct Trust {
   Vector hessian_eigenvalues;             // of the exact Hessian of J/2 in q of the free ones, ascending
   std::vector<DeterminedNumber> determined;
   bool map_linear = true;
+  // Headings alone are compared (position weight 0): numbers and drives are those of turns, no length is
+  // among them.
+  bool ratios_only = false;
   std::vector<std::string> map_remarks;
   std::vector<ParameterInterval> parameters;  // all whose bounds differ
   std::vector<DriveError> drives;

@@ -77,6 +77,7 @@ json to_json(const TrustRecord& trust) {
                                                {"nominal", finite_or_null(d.nominal)},
                                                {"value", finite_or_null(d.value)}},
                                               d.interval));
+  if (trust.ratios_only) out["ratios_only"] = true;
   for (const ParameterIntervalRecord& p : trust.parameters)
     out["parameters"].push_back(
         with_interval({{"name", p.name}, {"unit", p.unit}, {"value", finite_or_null(p.value)}}, p.interval));
@@ -95,6 +96,7 @@ TrustRecord trust_from(const JsonNode& node) {
   trust.kind_f = node.at("kind_f").stored_number();
   trust.kind_p = node.at("kind_p").stored_number();
   trust.systematic = node.at("systematic").boolean();
+  trust.ratios_only = node.has("ratios_only") && node.at("ratios_only").boolean();
   for (const JsonNode& d : node.at("determined").elements())
     trust.determined.push_back({d.at("name").text(), d.at("words").text(), d.at("unit").text(),
                                 d.at("nominal").stored_number(), d.at("value").stored_number(),

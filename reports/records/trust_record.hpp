@@ -45,6 +45,7 @@ struct TrustRecord {
   bool exact_hessian = false;
   double kind_f, kind_p;  // test of errors that repeat within kinds; not-a-number where it is not possible
   bool systematic = false;
+  bool ratios_only = false;  // headings alone were compared
   std::vector<DeterminedRecord> determined;
   std::vector<ParameterIntervalRecord> parameters;
   std::vector<DriveErrorRecord> drives;

@@ -148,6 +148,22 @@ TEST_F(CliLogs, AnotherOdometryIsAReferenceThatDrifts) {
   EXPECT_THAT(whole.err, Not(HasSubstr("--cost=segments, of")));
 }
 
+TEST_F(CliLogs, ProposesCountersThatRunOverAndFramesThatAreMirrored) {
+  DriveLog over;
+  over.bits = 10;
+  const ProcessResult counters = calibrate(drive(over));
+  ASSERT_EQ(counters.exit_code, 0) << counters.err;
+  EXPECT_THAT(counters.err, HasSubstr("wheel.left: a counter of 10 bits, which runs over"));
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+  DriveLog mirrored;
+  mirrored.y_to_the_right = true;
+  const ProcessResult frame = calibrate(drive(mirrored));
+  ASSERT_EQ(frame.exit_code, 0) << frame.err;
+  EXPECT_THAT(frame.err, HasSubstr("the reference's frame is mirrored"));
+  EXPECT_EQ(json::parse(content(folder_ / "out/map.json"))["signals"]["reference.y"]["sign"], -1);
+  expect_robot(calibrated(folder_ / "out/results"), 0.412, 0.0504, 0.04985, 1e-3);
+}
+
 TEST_F(CliLogs, SaysWhatTheLogDoesNotSay) {
   const Args logs = drive({});
   const ProcessResult run = run_bench({"calibrate", logs[0], logs[1], "--out=" + out(), "--quiet"});
@@ -255,6 +271,47 @@ TEST_F(CliLogs, CalibratesATricycleFromOneTable) {
   EXPECT_NEAR(found.at("r"), 0.0985, 1e-3 * 0.0985);
   EXPECT_NEAR(found.at("steering_zero"), 0.013, 2e-4);
   EXPECT_THAT(content(folder_ / "out/ros2.yaml"), HasSubstr("wheel_radius: 0.0985"));
+}
+
+// Four mecanum wheels, columns by their corners in an order of their own; radii 50.5, 49.5, 50, 50.2 mm (FL,
+// FR, RL, RR), half distances 0.21 + 0.19 m. It drives ahead, sideways and turns, all at once.
+std::string mecanum_table() {
+  double x = 0, y = 0, theta = 0, fl = 0, fr = 0, rl = 0, rr = 0;
+  std::string csv = "time_s,rear_left_rad,front_right_rad,front_left_rad,rear_right_rad,x_mm,y_mm,yaw_deg\n";
+  for (int k = 0; k <= 30000; ++k) {
+    const double t = 1e-3 * k, step = 1e-3, lever = 0.4, pi = 3.14159265358979;
+    const double on = t > 1 && t < 29 ? std::pow(std::sin((t - 1) * pi / 28), 2) : 0;
+    const double v = 0.4 * on * std::cos(0.9 * t), side = 0.3 * on * std::sin(0.7 * t),
+                 w = 0.6 * on * std::sin(0.5 * t);
+    if (k % 20 == 0)
+      csv += fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.3f},{:.3f},{:.4f}\n", t, rl, fr, fl, rr,
+                         1e3 * x, 1e3 * y, theta * 180 / pi);
+    const double middle = theta + w * step / 2;
+    x += (v * std::cos(middle) - side * std::sin(middle)) * step;
+    y += (v * std::sin(middle) + side * std::cos(middle)) * step;
+    theta += w * step;
+    fl += (v - side - lever * w) / 0.0505 * step;
+    fr += (v + side + lever * w) / 0.0495 * step;
+    rl += (v + side - lever * w) / 0.05 * step;
+    rr += (v - side + lever * w) / 0.0502 * step;
+  }
+  return csv;
+}
+
+TEST_F(CliLogs, TheClassOfTheRobotTellsWhatItsWheelsAre) {
+  const std::string log = folder_.file("drive.csv", mecanum_table());
+  const ProcessResult unknown = run_bench({"calibrate", log, "--out=" + out()});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--robot=CLASS of bench calibrate says which"));
+  const ProcessResult run =
+      run_bench({"calibrate", log, "--robot=mecanum", "--nominal=lx=0.2,ly=0.2,r=0.05", "--out=" + out()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::map<std::string, double> found = calibrated(folder_ / "out/results");
+  EXPECT_NEAR(found.at("lx") + found.at("ly"), 0.4, 1e-3);  // the drives tell their sum only
+  EXPECT_NEAR(found.at("r1"), 0.0505, 2e-5);
+  EXPECT_NEAR(found.at("r2"), 0.0495, 2e-5);
+  EXPECT_NEAR(found.at("r3"), 0.05, 2e-5);
+  EXPECT_NEAR(found.at("r4"), 0.0502, 2e-5);
 }
 
 // The sample drive in all formats; true: 0.4120, 0.05040, 0.04985 m.

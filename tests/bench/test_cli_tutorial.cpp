@@ -43,7 +43,7 @@ TEST(Tutorial, EveryCommandOfThePageWorks) {
     all += run.out + run.err;
   }
   // The figures that the page shows.
-  for (const char* figure : {"411.995   49.848  50.396", "runs 0.13703 s ahead",
+  for (const char* figure : {"411.995   49.848  50.396", "runs 0.13704 s ahead",
                              "x = 30.01 mm, y = -12.00 mm", "the robot's own odometry is no reference"})
     EXPECT_THAT(all, HasSubstr(figure));
 }

@@ -1,7 +1,8 @@
 // How small a fault may be and still be named: injects each fault in each of its sizes into made-up sets and
 // prints the share of them in which it is named, and how often another warning or error came with it.
 //
-// usage: inspection_power [SETS]
+// usage: inspection_power [SETS]            faults in the thesis' robot
+//        inspection_power --clean [SETS]    sets without faults, SETS of every class: what is said of them
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,11 +11,39 @@
 #include <set>
 #include <string>
 
+#include "datasets/robots/layouts.hpp"
 #include "problems/inspection/inspect.hpp"
 #include "tests/support/faulty_sets.hpp"
 
+namespace odobench {
+namespace {
+
+void look_at_clean_sets(int sets) {
+  int all = 0, alarms = 0;
+  for (const robots::Layout& layout : robots::layouts())
+    for (int s = 1; s <= sets; ++s) {
+      const Dataset d = testing::clean_set(layout.name, static_cast<std::uint64_t>(s));
+      bool alarm = false;
+      for (const inspection::Finding& f : inspection::inspect(d.robot, d.recordings)) {
+        if (f.severity == inspection::Severity::Note) continue;
+        alarm = true;
+        fmt::print("{}, seed {}: {}: {}\n", layout.name, s, f.kind, f.message);
+      }
+      ++all;
+      alarms += alarm ? 1 : 0;
+    }
+  fmt::print("{} clean sets, {} with warnings or errors\n", all, alarms);
+}
+
+}  // namespace
+}  // namespace odobench
+
 int main(int argc, char** argv) {
   using namespace odobench;
+  if (argc > 1 && std::string(argv[1]) == "--clean") {
+    look_at_clean_sets(argc > 2 ? std::atoi(argv[2]) : 16);
+    return 0;
+  }
   const int sets = argc > 1 ? std::atoi(argv[1]) : 20;
   std::vector<Dataset> clean;
   int alarms = 0;

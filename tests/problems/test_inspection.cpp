@@ -142,6 +142,32 @@ INSTANTIATE_TEST_SUITE_P(Every, CleanRobots, ::testing::ValuesIn([] {
                          }()),
                          [](const auto& one) { return one.param; });
 
+// Two wheels of unequal radii look as if the tracked point stood beside the robot: known by their slopes. A
+// point that does stand elsewhere, ahead or beside, is still a warning.
+TEST(TrackedPoint, OfTwoWheelsIsToldFromTheirRadii) {
+  const auto severity_with_lever = [](std::uint64_t seed, double x, double y) -> std::optional<Severity> {
+    Dataset d = testing::clean_set("skid_steer", seed);
+    for (Recording& r : d.recordings)
+      for (std::size_t k = 0; k < r.reference.x.size(); ++k) {
+        const double c = std::cos(r.reference.theta[k]), s = std::sin(r.reference.theta[k]);
+        r.reference.x[k] += c * x - s * y;
+        r.reference.y[k] += s * x + c * y;
+      }
+    for (const Finding& f : inspect(d.robot, d.recordings))
+      if (f.kind == "tracked_point") return f.severity;
+    return std::nullopt;
+  };
+  for (const std::uint64_t seed : {13, 27}) {
+    EXPECT_EQ(severity_with_lever(seed, 0, 0), Severity::Note);
+    EXPECT_EQ(severity_with_lever(seed, 0.03, 0), Severity::Warning);
+  }
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    EXPECT_EQ(severity_with_lever(seed, 0, 0), std::nullopt);
+    EXPECT_EQ(severity_with_lever(seed, 0.05, 0), Severity::Warning);
+    EXPECT_EQ(severity_with_lever(seed, 0, 0.05), Severity::Warning);
+  }
+}
+
 Vector calibrated(const Dataset& d) {
   CalibrationOptions options;
   options.from_origin = true;

@@ -20,6 +20,12 @@ namespace {
 constexpr const char* kTicks = "std_msgs/Header header\nint32 left\nint32 right\n";
 
 // Definitions as recorders write them: all types behind the main one.
+std::string text_bytes(std::string_view text) {
+  return number_bytes(static_cast<std::uint32_t>(text.size())) + std::string(text);
+}
+
+}  // namespace
+
 std::string full_definition(const std::string& main, RosEncoding encoding,
                             const std::vector<std::string>& parts) {
   std::string text = main;
@@ -31,12 +37,6 @@ std::string full_definition(const std::string& main, RosEncoding encoding,
   }
   return text;
 }
-
-std::string text_bytes(std::string_view text) {
-  return number_bytes(static_cast<std::uint32_t>(text.size())) + std::string(text);
-}
-
-}  // namespace
 
 MessageBytes::MessageBytes(RosEncoding encoding, bool big_endian)
     : encoding_(encoding), big_endian_(big_endian) {

@@ -50,6 +50,10 @@ class MessageBytes {
   std::string bytes_;
 };
 
+// The text of a type: `main` and the standard messages behind it.
+std::string full_definition(const std::string& main, RosEncoding encoding,
+                            const std::vector<std::string>& parts);
+
 struct WrittenChannel {
   std::string topic, type, definition;
 };

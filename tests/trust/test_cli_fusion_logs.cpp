@@ -131,6 +131,51 @@ class FusionOfLogs : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(FusionOfLogs, CalibrateKeepsThemAndNamesTheNextCommand) {
+  ASSERT_EQ(import_logs().exit_code, 0);  // writes the logs
+  std::vector<std::string> words{"calibrate"};
+  for (const char* name : {"wheels.csv", "mocap.csv", "imu.csv", "camera.csv"})
+    words.push_back((folder_ / name).string());
+  words.insert(words.end(),
+               {"--map=" + (folder_ / "map.json").string(), "--out=" + (folder_ / "out").string()});
+  const ProcessResult run = run_bench(words);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(content(folder_ / "out/set_sensors.json").size(), content(sensors()).size());
+  const std::string begin = "next: bench fuse ";
+  const std::size_t at = run.err.find(begin);
+  ASSERT_NE(at, std::string::npos) << run.err;
+  std::istringstream command(run.err.substr(at + begin.size(), run.err.find('\n', at) - at - begin.size()));
+  words = {"fuse"};
+  for (std::string word; command >> word;) words.push_back(word);
+  const ProcessResult fused = run_bench(words);
+  EXPECT_EQ(fused.exit_code, 0) << fused.err;
+  EXPECT_THAT(fused.out, HasSubstr("lm@results+ekf"));
+}
+
+TEST_F(FusionOfLogs, TuneTakesThemToo) {
+  ASSERT_EQ(import_logs().exit_code, 0);
+  const ProcessResult run = run_bench({"tune", "--data=" + set(), "--sensors=" + sensors(), "--max-evals=40",
+                                       "--out=" + (folder_ / "tuned.json").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json given = json::parse(content(sensors())), tuned = json::parse(content(folder_ / "tuned.json"));
+  // The camera has no noise: what is believed of it falls; what is read stays.
+  const auto camera = [](const json& file) {
+    for (const json& s : file.at("sensors"))
+      if (s.at("name") == "camera") return s;
+    return json();
+  };
+  EXPECT_LT(camera(tuned)["filter"]["sigma_position"], camera(given)["filter"]["sigma_position"]);
+  EXPECT_EQ(camera(tuned)["file"], camera(given)["file"]);
+  // Other robots: one line.
+  json other = json::parse(content(set()));
+  other["robot"]["kinematics"] = "swerve";
+  other["robot"].erase("parameters");
+  const ProcessResult refused =
+      run_bench({"tune", "--data=" + folder_.file("other.json", other.dump()), "--sensors=" + sensors()});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("expected \"4wis4wid\""));
+}
+
 TEST_F(FusionOfLogs, TheSetKeepsTheirMeasurementsByTheRecordingsClock) {
   const ProcessResult imported = import_logs();
   ASSERT_EQ(imported.exit_code, 0) << imported.err;

@@ -42,12 +42,18 @@ Finding calibrated_by(const classical::Method& method, const LoadedProblem& load
   const std::vector<Recording>& recordings = loaded.calibration->recordings();
   const classical::Options options = classical_options(loaded, choice);
   Finding found;
-  found.reason = method.why_not(robot, recordings, options);
+  found.reason = loaded.dataset->reference == ReferenceKind::Headings
+                     ? "the reference has headings and no positions"
+                     : method.why_not(robot, recordings, options);
   if (!found.reason.empty()) return found;
   try {
     found.result = method.run(robot, recordings, options);
     if (!found.result.z.allFinite())
       found.reason = "its equations have no finite solution on these recordings";
+    for (Eigen::Index i = 0; i < found.result.z.size(); ++i)
+      if (const RobotParameter& p = robot.parameters[static_cast<std::size_t>(i)];
+          p.lower == p.upper && found.result.z[i] != p.nominal)
+        found.reason = fmt::format("it finds {}, which the robot holds fixed", p.name);
   } catch (const std::invalid_argument& error) {
     found.reason = error.what();
     if (const std::string prefix = method.name + ": "; found.reason.rfind(prefix, 0) == 0)

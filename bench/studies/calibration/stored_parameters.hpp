@@ -8,10 +8,11 @@
 
 namespace odobench {
 
-// Every entry of --parameters of `bench evaluate`: as read_parameter_list() has them, and besides a folder
-// of a run, or its runs.jsonl, for the parameters of the best run by J of each of its rows, and SOURCE:ROW
-// for one row. They are labelled "ROW@FOLDER" after the folder. The set's own nominal
-// parameters come first where a folder is given; those of the folder are left out unless they are named.
+// Every entry of --parameters of `bench evaluate`, `fuse` and `tune`: names and files as read_parameters()
+// has them, and besides a folder of a run, or its runs.jsonl, for the parameters of the best run by J of each
+// of its rows, and SOURCE:ROW for one row. They are labelled "ROW@FOLDER" after the folder. The set's own
+// nominal parameters come first where a folder is given; those of the folder are left out unless they are
+// named.
 //
 // Parameters are taken by name. Throws DataError where names or units differ, saying which, and where nothing
 // is in the records; std::invalid_argument for a row that is not there and where two sets have one label. A

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/fusion/fusable_recordings.hpp"
 #include "bench/studies/fusion/fusion_remarks.hpp"
@@ -61,7 +62,7 @@ FusionRuns fuse_recordings(const FusionStudy& study, Watcher& watcher, const Sto
   const LoadedProblem loaded = load_calibration(study.data, kernel);
   const FusableRecordings fusable = fusable_recordings(loaded);
   const std::vector<std::string> findings = say_findings(loaded, {}, false, study.threads, watcher);
-  const std::vector<ParameterSet> sets = read_parameter_list(loaded, study.parameters, watcher);
+  const std::vector<ParameterSet> sets = read_judged_parameters(loaded, study.parameters, watcher);
   const std::vector<Recording>& recordings = fusable.recordings;
   const std::uint64_t seed = study.seed.value_or(sensors.seed);
   const double measurements = require_measurements(sensors, recordings);

@@ -16,7 +16,7 @@ namespace odobench {
 
 struct FusionStudy {
   std::string data;                     // path of set.json; empty: the demo set
-  std::vector<std::string> parameters;  // files or names, as of read_parameter_list()
+  std::vector<std::string> parameters;  // files or names, as of read_judged_parameters()
   std::vector<std::string> filters;     // comma lists; empty: none,ekf,ukf
   std::string sensors;                  // file
   std::string odometry_noise;           // as wheel_noise_choice() takes it

@@ -13,8 +13,11 @@
 #include "base/files.hpp"
 #include "base/random.hpp"
 #include "bench/catalogue/option_values.hpp"
+#include "bench/studies/calibration/stored_parameters.hpp"
 #include "bench/studies/cells.hpp"
 #include "bench/studies/context.hpp"
+#include "bench/studies/fusion/fusable_recordings.hpp"
+#include "bench/studies/fusion/wheel_noise.hpp"
 #include "bench/studies/parameter_sets.hpp"
 #include "bench/studies/records.hpp"
 #include "problems/fusion/sensors_file.hpp"
@@ -34,16 +37,23 @@ struct TunedSetting {
   FusedRow judged;  // on recordings that the fit has not seen, where there are such
 };
 
+struct Drives {
+  std::vector<Recording> recordings;
+  std::vector<std::vector<SensorStream>> streams;  // of each
+};
 struct Split {
-  std::vector<Recording> training, held_out;
+  Drives training, held_out;
 };
 
 // The first drive of each trajectory trains; the others judge, or the same ones where there are no others.
-Split split(const std::vector<Recording>& recordings) {
+Split split(const std::vector<Recording>& recordings, std::vector<std::vector<SensorStream>> streams) {
   Split s;
   std::set<std::string> seen;
-  for (const Recording& r : recordings)
-    (seen.insert(r.trajectory).second ? s.training : s.held_out).push_back(r);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    Drives& part = seen.insert(recordings[i].trajectory).second ? s.training : s.held_out;
+    part.recordings.push_back(recordings[i]);
+    part.streams.push_back(std::move(streams[i]));
+  }
   return s;
 }
 
@@ -170,32 +180,40 @@ Tuning tune_filter(const TuningStudy& study, const Catalogue& catalogue, Watcher
   SensorsFile sensors = read_sensors(study.sensors);
   sensors.options.filter.kind = filter.kind;
   const LoadedProblem loaded = load_calibration(study.data, kernel_in_force(study.kernel));
-  require_4wis4wid(loaded, "tuning of filters");
-  const std::vector<ParameterSet> sets = read_parameter_list(loaded, {study.parameters}, watcher);
+  const FusableRecordings fusable = fusable_recordings(loaded);
+  std::vector<ParameterSet> sets = read_judged_parameters(loaded, {study.parameters}, watcher);
+  // Beside a folder's row stand the nominal parameters, which nobody asked for here.
+  if (sets.size() == 2 && sets.front().label == "nominal" && study.parameters.find(',') == std::string::npos)
+    sets.erase(sets.begin());
   if (sets.size() != 1)
     throw std::invalid_argument(
         fmt::format("--parameters={}: {} parameter sets, expected one", study.parameters, sets.size()));
   const std::uint64_t seed = study.seed.value_or(sensors.seed);
-  const Split s = split(loaded.calibration->recordings());
-  const std::vector<Recording>& judge = s.held_out.empty() ? s.training : s.held_out;
-  require_measurements(sensors, judge);
-  require_measurements(sensors, s.training);
-  const auto judge_streams = all_streams(sensors, judge, seed, 0, stop);
+  // Where the file does not say it, what the drives show of the wheels is where tuning begins.
+  if (!sensors.wheels)
+    notes.push_back(
+        believe_wheels(wheel_noise_choice("", sensors), loaded, sets[0].values, sets[0].label, sensors));
+  require_measurements(sensors, fusable.recordings);
+  auto streams = all_streams(sensors, fusable.recordings, seed, 0, stop);
+  shift_streams(fusable, sensors, streams);
+  const Split s = split(fusable.recordings, std::move(streams));
+  const Drives& judge = s.held_out.recordings.empty() ? s.training : s.held_out;
+  for (const std::string& text : notes) watcher.note(text);
   const auto model = std::make_shared<const FusionTuningProblem>(
-      std::make_shared<const std::vector<Recording>>(s.training), sets[0].values,
-      all_streams(sensors, s.training, seed, 0, stop), sensors.options, objective);
+      std::make_shared<const std::vector<Recording>>(s.training.recordings), sets[0].values,
+      s.training.streams, sensors.options, objective);
   const Problem problem(model);
 
   Tuning tuning;
-  tuning.circumstances = {{}, s.training.size(), s.held_out.size()};
+  tuning.circumstances = {{}, s.training.recordings.size(), s.held_out.recordings.size()};
   std::vector<TunedSetting> settings =
       fitted(problem, *model, solvers, catalogue, study, seed, loaded.dataset_name(),
              tuning.circumstances.remarks, watcher, stop);
   for (TunedSetting& setting : settings) {
     SensorsFile changed = sensors;
-    std::vector<std::vector<SensorStream>> streams = judge_streams;
-    for (std::vector<SensorStream>& one : streams) model->apply(setting.x, changed.options, one);
-    setting.judged = fuse_all(judge, sets[0].values, filter, changed, streams, 0, stop);
+    std::vector<std::vector<SensorStream>> tuned = judge.streams;
+    for (std::vector<SensorStream>& one : tuned) model->apply(setting.x, changed.options, one);
+    setting.judged = fuse_all(judge.recordings, sets[0].values, filter, changed, tuned, 0, stop);
   }
   tuning.sensors =
       sensor_table(sensors, seed, loaded.dataset_name(),

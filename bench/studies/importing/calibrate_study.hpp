@@ -34,6 +34,8 @@ struct Calibrated {
   std::vector<RunRecord> records;            // nominal, lm
   std::vector<std::filesystem::path> files;  // what was written, for people
   std::filesystem::path results;             // the run directory
+  std::filesystem::path set,
+      sensors;  // what bench fuse takes; sensors "" where the robot has none that it knows
 };
 
 // Proposes a map (unless one is given), imports, calibrates with `lm`, writes. What was assumed goes to the

@@ -4,6 +4,7 @@
 
 #include "base/json_node.hpp"
 #include "base/text.hpp"
+#include "bench/studies/importing/heading_reference.hpp"
 #include "bench/studies/importing/log_alignment.hpp"
 #include "datasets/import/logs/log_import.hpp"
 #include "datasets/logs/formats.hpp"
@@ -26,6 +27,7 @@ ImportedLogs import_logs(const LogStudy& study, Watcher& watcher, const Stop& st
   LogAlignment aligned = align_logs(loaded, stop);
   for (const std::string& text : aligned.warnings) watcher.warn(text);
   out.dataset = make_dataset(loaded, aligned.adjustment, &out.sensors);
+  complete_heading_reference(out.dataset);
   for (std::string& text : aligned.report) out.dataset.notes.push_back(std::move(text));
   for (std::string& text : log_import::describe_drives(out.dataset)) out.report.push_back(std::move(text));
   return out;

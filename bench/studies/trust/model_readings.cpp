@@ -197,11 +197,13 @@ void recommend(const std::vector<ModelFits>& fits, std::vector<RunRecord>& recor
       });
   RunRecord& r = records[chosen.record];
   r.measures.put({"recommended", 1, "", Better::None});
+  std::string totals;  // where there are any to leave out
+  for (const auto& [name, words] :
+       {std::pair{"held_total", "another repetition"}, std::pair{"new_kind_total", "a new kind of drive"}})
+    if (const double total = r.measures.value(name).value_or(NAN); std::isfinite(total))
+      totals += fmt::format("{}{:.3f} for {}", totals.empty() ? "" : " and ", total, words);
   nominal.notes.push_back(
-      fmt::format("use {}: total {:.3f} for another repetition and {:.3f} for a new kind of drive, against "
-                  "{:.3f} nominal",
-                  r.label, r.measures.value("held_total").value_or(NAN),
-                  r.measures.value("new_kind_total").value_or(NAN), reference));
+      fmt::format("use {}: total {}, against {:.3f} nominal", r.label, totals, reference));
 }
 
 }  // namespace

@@ -55,6 +55,8 @@ std::vector<std::string> describe_noise(const LoadedProblem& loaded, RunRecord& 
   std::vector<std::string> remarks;
   if (!loaded.calibration || record.parameters.size() != loaded.calibration->parameters().size())
     return remarks;
+  if (loaded.dataset->reference == ReferenceKind::Headings)
+    return {"noise of the odometry: not estimated: a gyro measures no positions"};
   Vector z(static_cast<Eigen::Index>(record.parameters.size()));
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
     z[static_cast<Eigen::Index>(i)] = record.parameters[i].value;

@@ -7,13 +7,10 @@
 
 #include "base/angle.hpp"
 #include "base/error.hpp"
+#include "datasets/import/logs/gyro_standing.hpp"
 
 namespace odobench::log_import {
 namespace {
-
-constexpr double kStillWindow = 0.25;  // s, to either side of a stamp
-constexpr double kStillTurn = 0.01;    // rad that a wheel turns in it at most
-constexpr double kLeast = 0.5;         // s of standing that tell a bias
 
 const Curve* curve_called(const LogCurves& curves, const char* name) {
   for (const Curve& curve : curves.others)
@@ -54,41 +51,12 @@ DriveSensors::DriveSensors(const LogMap& map, const LogCurves& curves,
             "{}: rows of the camera that lack camera.x, camera.y or camera.heading, expected all three",
             curves.id));
   }
-  if (gyro_ != nullptr) find_standing();
+  if (gyro_ != nullptr) standing_ = gyro_standing(map, curves.signals, *gyro_, offsets);
 }
 
 double DriveSensors::shift(const Curve& curve) const {
   const auto found = offsets_.find(curve.source);
   return found == offsets_.end() ? 0 : found->second;
-}
-
-void DriveSensors::find_standing() {
-  std::vector<std::size_t> hints(2 * curves_.signals.size());
-  const auto turned = [&](std::size_t i, double t) {
-    const Curve& wheel = curves_.signals[i];
-    const double at = t + shift(wheel);
-    return std::abs(wheel.at(at + kStillWindow, hints[2 * i]) -
-                    wheel.at(at - kStillWindow, hints[2 * i + 1]));
-  };
-  double sum = 0, squares = 0, seconds = 0, count = 0;
-  for (std::size_t k = 1; k < gyro_->time.size(); ++k) {
-    const double t = gyro_->time[k] - shift(*gyro_);
-    bool stands = true;
-    for (std::size_t i = 0; stands && i < curves_.signals.size(); ++i) {
-      if (map_.signals[i].format.signal_kind() == SignalKind::Angle) continue;
-      const Curve& wheel = curves_.signals[i];
-      stands = t - kStillWindow >= wheel.time.front() - shift(wheel) &&
-               t + kStillWindow <= wheel.time.back() - shift(wheel) && turned(i, t) <= kStillTurn;
-    }
-    if (!stands) continue;
-    sum += gyro_->value[k];
-    squares += gyro_->value[k] * gyro_->value[k];
-    seconds += std::min(kStillWindow, gyro_->time[k] - gyro_->time[k - 1]);
-    ++count;
-  }
-  if (seconds < kLeast || count < 3) return;
-  const double mean = sum / count;
-  standing_ = {mean, std::sqrt(std::max(0.0, squares / count - mean * mean)), seconds};
 }
 
 SensorRows DriveSensors::gyro(double from, double to) const {

@@ -26,7 +26,6 @@ class DriveSensors {
   std::vector<SensorRows> of_drive(const Recording& recording, double from, double to) const;
 
  private:
-  void find_standing();
   double shift(const Curve& curve) const;
   SensorRows gyro(double from, double to) const;
   SensorRows camera(const Recording& recording, double from, double to) const;

@@ -9,6 +9,7 @@
 #include "base/angle.hpp"
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "datasets/import/logs/gyro_standing.hpp"
 #include "datasets/import/logs/log_groups.hpp"
 #include "datasets/import/logs/log_rows.hpp"
 
@@ -101,7 +102,8 @@ class CurveReader {
         out_.others.push_back(take(field, field.target));
         for (double& v : out_.others.back().value) v *= field.scale;
       }
-    if (!map_.reference.empty()) report(out_.x);
+    if (map_.kind == ReferenceKind::Headings) turn_by_gyro();
+    if (!map_.reference.empty() && map_.kind != ReferenceKind::Headings) report(out_.x);
     for (const Curve& curve : out_.signals) report(curve);
     for (const Curve& curve : out_.others) report(curve);
     return std::move(out_);
@@ -112,7 +114,7 @@ class CurveReader {
     const bool none = map_.reference.empty();
     const SourceRows& rows = rows_.of(none ? map_.signals.front().at.source : map_.reference.front().source);
     out_.begin_ns = rows.time_ns.empty() ? 0 : rows.time_ns.front();
-    if (none) return;
+    if (none || map_.kind == ReferenceKind::Headings) return;
     std::vector<Curve> curves;
     for (const MappedField& field : map_.reference) {
       curves.push_back(take(field, field.target));
@@ -127,6 +129,33 @@ class CurveReader {
     out_.x.name = "reference";
     if (const std::size_t jumps = unwrap(out_.heading.value))
       out_.notes.push_back(fmt::format("{}: {} jumps of the heading by a turn taken out", out_.id, jumps));
+  }
+
+  // The integral of the gyro less what it said standing, by trapezoids; nobody measured x and y.
+  void turn_by_gyro() {
+    const auto gyro = std::find_if(out_.others.begin(), out_.others.end(),
+                                   [](const Curve& curve) { return curve.name == "gyro.z"; });
+    const std::optional<Standing> standing = gyro_standing(map_, out_.signals, *gyro);
+    const double bias = standing ? standing->mean : 0;
+    out_.heading = *gyro;
+    out_.heading.name = "reference.heading";
+    double angle = 0;
+    for (std::size_t k = 0; k < gyro->time.size(); ++k) {
+      if (k > 0)
+        angle += ((gyro->value[k - 1] + gyro->value[k]) / 2 - bias) * (gyro->time[k] - gyro->time[k - 1]);
+      out_.heading.value[k] = angle;
+    }
+    out_.x = out_.heading;
+    out_.x.name = "reference";
+    out_.x.value.assign(gyro->time.size(), 0.0);
+    out_.y = out_.x;
+    out_.notes.push_back(
+        standing ? fmt::format("{}: gyro: {:.5f} rad/s while it stood ({:.1f} s) taken off; headings are its "
+                               "integral",
+                               out_.id, bias, standing->seconds)
+                 : fmt::format("{}: gyro: the robot never stands for half a second, so that its bias is not "
+                               "known and turns every heading: stand still for some seconds before driving",
+                               out_.id));
   }
 
   // The rows of a field that have a value.

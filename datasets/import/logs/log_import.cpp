@@ -35,6 +35,7 @@ class DatasetMaker {
     set_.name = map.name;
     set_.description = map.description;
     set_.robot = map.robot;
+    set_.reference = map.kind;
     set_.provenance = {map.source, map.licence, "bench import", {}};
     set_.provenance.files.push_back({fs::path(map.file).filename().string(), loaded_.map_sha256});
     for (const SourceFile& file : loaded_.files) set_.provenance.files.push_back(file);

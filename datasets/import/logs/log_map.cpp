@@ -98,6 +98,18 @@ MappedField read_reference(const JsonNode& node, const std::string& target, cons
   return field;
 }
 
+// Nothing but a gyro: it is the reference of headings.
+bool take_gyro(LogMap& map) {
+  for (MappedField& field : map.others) {
+    if (field.target != "gyro.z") continue;
+    field.optional = false;
+    map.reference = {field, field, field};
+    map.kind = ReferenceKind::Headings;
+    return true;
+  }
+  return false;
+}
+
 void read_signals(const JsonNode& node, LogMap& map, MapUse use) {
   SignalReader signals(node, map);
   for (const std::string& key : node.keys()) {
@@ -116,12 +128,13 @@ void read_signals(const JsonNode& node, LogMap& map, MapUse use) {
     return;
   }
   if (use == MapUse::Filter && map.reference.empty()) return;
+  if (map.reference.empty() && take_gyro(map)) return;
   for (const char* target : {"reference.x", "reference.y", "reference.heading"})
     if (std::none_of(map.reference.begin(), map.reference.end(),
                      [&](const MappedField& f) { return f.target == target; }))
       node.fail(fmt::format("no \"{}\"", target),
-                "where the robot was: reference.x, reference.y and "
-                "reference.heading, or a table of end poses (\"poses\")");
+                "where the robot was: reference.x, reference.y and reference.heading, a table of end poses "
+                "(\"poses\"), or gyro.z for its turns alone");
   std::sort(map.reference.begin(), map.reference.end(), [](const MappedField& a, const MappedField& b) {
     const auto place = [](const MappedField& f) {
       return f.target == "reference.heading" ? 2 : f.target.back() - 'x';
@@ -181,6 +194,22 @@ void read_limits(const JsonNode& node, LogMap& map) {
   if (node.has("min_drive_s")) map.shortest_drive_s = positive(node.at("min_drive_s"), 1e6);
 }
 
+// "drifting" of another odometry.
+void read_kind(const JsonNode& root, LogMap& map) {
+  if (map.kind == ReferenceKind::Headings && root.has("mount"))
+    root.at("mount").fail("a mount", "none: a gyro turns as the robot does, wherever it sits");
+  if (!root.has("reference")) return;
+  const std::string name = root.at("reference").text();
+  const bool drifts = name == name_of(ReferenceKind::Drifting);
+  if (!drifts && name != name_of(map.kind))
+    root.at("reference")
+        .fail('"' + shown(name) + '"',
+              fmt::format("\"drifting\", or \"{}\" as by default", name_of(map.kind)));
+  if (drifts && (map.reference.empty() || map.kind == ReferenceKind::Headings))
+    root.at("reference").fail("\"drifting\"", "it of poses only");
+  if (drifts) map.kind = ReferenceKind::Drifting;
+}
+
 // What needs to know where the robot was in between.
 void refuse_with_poses(const JsonNode& root, const LogMap& map) {
   if (root.has("mount"))
@@ -205,7 +234,7 @@ LogMap parse_log_map(std::string_view text, const std::string& file, const std::
   const JsonNode root = JsonNode::parse(text, file);
   csv_import::check_map_schema(
       root, {"schema", "schema_version", "name", "description", "source", "licence", "robot", "sources",
-             "signals", "poses", "mount", "camera_mount", "drives", "limits"});
+             "signals", "poses", "reference", "mount", "camera_mount", "drives", "limits"});
   LogMap map;
   map.file = file;
   map.name = root.at("name").text();
@@ -220,6 +249,7 @@ LogMap parse_log_map(std::string_view text, const std::string& file, const std::
   if (!map.poses.empty()) refuse_with_poses(root, map);
   if (root.has("limits")) read_limits(root.at("limits"), map);
   read_signals(root.at("signals"), map, use);
+  read_kind(root, map);
   if (root.has("mount")) read_mount(root.at("mount"), map);
   if (root.has("camera_mount"))
     read_frame(root.at("camera_mount"), map.camera_x, map.camera_y, map.camera_yaw);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "datasets/dataset.hpp"
 #include "datasets/logs/log_file.hpp"
 #include "datasets/native/signal_format.hpp"
 #include "datasets/robots/robot.hpp"
@@ -54,10 +55,12 @@ struct LogMap {
   std::string name, description, source, licence;
   Robot robot;
   std::vector<MappedSource> sources;
-  std::vector<MappedField> reference;  // x, y, heading; none where end poses were measured
-  std::filesystem::path poses;         // table of such (end_poses.hpp), "" without
-  std::vector<MappedSignal> signals;   // those of the robot, in its order
-  std::vector<MappedField> others;     // gyro.z, accel.x, accel.y, camera.*: optional ones may be missing
+  // x, y, heading; none where end poses were measured; of headings the gyro, three times.
+  std::vector<MappedField> reference;
+  ReferenceKind kind = ReferenceKind::Poses;
+  std::filesystem::path poses;        // table of such (end_poses.hpp), "" without
+  std::vector<MappedSignal> signals;  // those of the robot, in its order
+  std::vector<MappedField> others;    // gyro.z, accel.x, accel.y, camera.*: optional ones may be missing
   double mount_x = 0, mount_y = 0, mount_yaw = 0;  // of the tracked frame in the robot's; m, rad
   bool estimate_mount = false;
   double camera_x = 0, camera_y = 0, camera_yaw = 0;  // of the camera in the robot's frame; m, rad
@@ -76,8 +79,8 @@ enum class MapUse { Recordings, Filter };
 
 // Throws DataError "file: /place: found ..., expected ..." for broken JSON, unknown keys and names (with the
 // nearest known one), null, wrong units, a robot that read_robot() refuses, sources that do not exist,
-// signals that the robot has not or that are missing. A map without reference has "poses", a file beside it;
-// `poses` goes before that one.
+// signals that the robot has not or that are missing. A map without reference has "poses", a file beside it
+// (`poses` goes before that one), or a gyro whose integral is the reference: ReferenceKind::Headings.
 LogMap parse_log_map(std::string_view text, const std::string& file, const std::filesystem::path& poses = {},
                      MapUse use = MapUse::Recordings);
 

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <optional>
 
 #include "base/text.hpp"
 #include "datasets/csv/column_name.hpp"
 #include "datasets/import/logs/reference_roles.hpp"
+#include "datasets/robots/layouts.hpp"
+#include "datasets/robots/robot.hpp"
 
 namespace odobench::log_import {
 namespace {
@@ -48,11 +51,50 @@ int rank_of(const WheelSet& set) {
   return by_kind + (set.by_place ? 10 : 0);
 }
 
-void finish(WheelSet& set) {
+// "wheel.1" -> "1".
+std::string behind_dot(const std::string& signal) {
+  const std::size_t dot = signal.find('.');
+  return dot == std::string::npos ? "" : signal.substr(dot + 1);
+}
+
+// What of the class these roles are: by their own names, else by quadrants. False where they are not those of
+// it.
+bool fit_class(const std::string& robot, WheelSet& set) {
+  const WheelTable table = robots::make_robot(robots::layout(robot));
+  std::vector<double> nominal;
+  for (const BoundParameter& p : table.parameters) nominal.push_back(p.parameter.nominal);
+  std::map<std::string, std::string> drives, steers;  // which -> quadrant
+  for (const Wheel& w : wheels_with(table, nominal)) {
+    const std::string quadrant =
+        w.x == 0 || w.y == 0 ? "" : std::string(w.x > 0 ? "F" : "R") + (w.y > 0 ? "L" : "R");
+    for (const DriveSignal& d : w.drive) drives[behind_dot(d.name)] = quadrant;
+    if (!w.steering.empty()) steers[behind_dot(w.steering)] = quadrant;
+  }
+  const auto fit = [](const std::map<std::string, std::string>& wanted, std::vector<Role>& roles) {
+    if (roles.size() != wanted.size()) return false;
+    for (const bool by_quadrant : {false, true}) {
+      std::map<std::string, std::string> found;  // which of the class -> of the role
+      for (const Role& role : roles)
+        for (const auto& [which, quadrant] : wanted)
+          if (by_quadrant ? !quadrant.empty() && quadrant == role.quadrant : which == role.which)
+            found[which] = role.field;
+      if (found.size() != wanted.size()) continue;
+      for (Role& role : roles)
+        for (const auto& [which, field] : found)
+          if (field == role.field) role.which = which;
+      return true;
+    }
+    return false;
+  };
+  return fit(drives, set.wheels) && fit(steers, set.steering);
+}
+
+void finish(WheelSet& set, const std::string& robot) {
   std::vector<std::string> driven, steered;
   for (const Role& role : set.wheels) driven.push_back(role.which);
   for (const Role& role : set.steering) steered.push_back(role.which);
   set.kinematics = class_of_wheels(driven, steered);
+  if (!robot.empty() && !set.wheels.empty() && fit_class(robot, set)) set.kinematics = robot;
   set.rank = rank_of(set);
 }
 
@@ -63,7 +105,8 @@ std::optional<std::string> joint_of(const std::string& path, const std::string& 
   return path.substr(head.size(), path.size() - head.size() - 1);
 }
 
-WheelSet joints(const LogSource& source, std::size_t number, const std::string& array) {
+WheelSet joints(const LogSource& source, std::size_t number, const std::string& array,
+                const std::string& robot) {
   WheelSet set;
   for (const LogField& field : source.fields) {
     const std::optional<std::string> joint = joint_of(field.path, array);
@@ -74,13 +117,13 @@ WheelSet joints(const LogSource& source, std::size_t number, const std::string& 
     if (steers && array != "position") continue;
     const std::string unit = array == "velocity" ? "rad/s" : "rad";
     (steers ? set.steering : set.wheels)
-        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit});
+        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit, name.quadrant});
   }
-  finish(set);
+  finish(set, robot);
   return set;
 }
 
-WheelSet named(const LogSource& source, std::size_t number) {
+WheelSet named(const LogSource& source, std::size_t number, const std::string& robot) {
   WheelSet set;
   for (const LogField& field : source.fields) {
     if (!numeric(field) || field.path.starts_with("header.") || field.path.starts_with("#")) continue;
@@ -91,14 +134,14 @@ WheelSet named(const LogSource& source, std::size_t number) {
     std::string unit = fits ? name.unit : "";
     if (unit.empty() && whole_numbers(field)) unit = "count";
     (steers ? set.steering : set.wheels)
-        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit});
+        .push_back({name.which, number, field.path, "", kind_of(unit, steers), unit, name.quadrant});
   }
-  finish(set);
+  finish(set, robot);
   return set;
 }
 
 // Two numbers side by side: "count[0]", "count[1]", or two columns without names.
-WheelSet pair_by_place(const LogSource& source, std::size_t number) {
+WheelSet pair_by_place(const LogSource& source, std::size_t number, const std::string& robot) {
   WheelSet set;
   set.by_place = true;
   std::vector<const LogField*> pair;
@@ -128,17 +171,17 @@ WheelSet pair_by_place(const LogSource& source, std::size_t number) {
   if (unit.empty()) unit = base.find("vel") != std::string::npos ? "rad/s" : "rad";
   set.wheels = {{"left", number, pair[0]->path, "", kind_of(unit, false), unit},
                 {"right", number, pair[1]->path, "", kind_of(unit, false), unit}};
-  finish(set);
+  finish(set, robot);
   return set;
 }
 
-WheelSet wheels_of(const LogSource& source, std::size_t number) {
+WheelSet wheels_of(const LogSource& source, std::size_t number, const std::string& robot) {
   WheelSet best;
   std::vector<WheelSet> sets;
   if (source.type.ends_with("JointState"))
-    sets = {joints(source, number, "position"), joints(source, number, "velocity")};
+    sets = {joints(source, number, "position", robot), joints(source, number, "velocity", robot)};
   else
-    sets = {named(source, number), pair_by_place(source, number)};
+    sets = {named(source, number, robot), pair_by_place(source, number, robot)};
   for (WheelSet& set : sets)
     if (!set.wheels.empty() && set.rank < best.rank) best = std::move(set);
   return best;
@@ -160,7 +203,7 @@ void find_gyro(const std::vector<SurveyedSource>& sources, Roles& roles) {
 
 }  // namespace
 
-Roles find_roles(const std::vector<SurveyedSource>& sources) {
+Roles find_roles(const std::vector<SurveyedSource>& sources, const std::string& robot) {
   Roles roles;
   WheelSet best;
   std::size_t of = 0;
@@ -170,7 +213,7 @@ Roles find_roles(const std::vector<SurveyedSource>& sources) {
           fmt::format("{}: {}", shown(sources[i].source.name), shown(sources[i].source.unreadable)));
       continue;
     }
-    WheelSet set = wheels_of(sources[i].source, i);
+    WheelSet set = wheels_of(sources[i].source, i, robot);
     if (set.rank >= best.rank) continue;
     best = std::move(set);
     of = i;
@@ -187,10 +230,12 @@ Roles find_roles(const std::vector<SurveyedSource>& sources) {
   };
   for (const Role& role : roles.wheels) say(role, "wheel");
   for (const Role& role : roles.steering) say(role, "steering");
-  roles.reasons.push_back(roles.wheels.empty() ? "no wheels found: null"
-                          : roles.kinematics.empty()
-                              ? "robot: the wheels fit several classes or none: null"
-                              : fmt::format("robot: {}, as its wheels say", roles.kinematics));
+  roles.reasons.push_back(
+      roles.wheels.empty() ? "no wheels found: null"
+      : roles.kinematics.empty()
+          ? "robot: the wheels fit several classes or none: null; --robot=CLASS of bench calibrate says which"
+          : fmt::format("robot: {}, {}", roles.kinematics,
+                        roles.kinematics == robot ? "as asked for" : "as its wheels say"));
   find_reference(sources, roles);
   find_gyro(sources, roles);
   return roles;

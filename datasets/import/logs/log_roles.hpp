@@ -25,8 +25,9 @@ struct Role {
   std::string which;  // of a wheel: "left", "1", "" where there is one; of a reference "x", "y", "heading"
   std::size_t source = 0;  // number of the surveyed source
   std::string field, quaternion;
-  std::string kind;  // of a wheel: "position", "speed", "travel"
-  std::string unit;  // "" where nothing tells it
+  std::string kind;           // of a wheel: "position", "speed", "travel"
+  std::string unit;           // "" where nothing tells it
+  std::string quadrant = {};  // of a wheel whose name says it: "FL", "FR", "RL", "RR"
 };
 
 struct Roles {
@@ -40,9 +41,10 @@ struct Roles {
 };
 
 // Wheels: joints of JointState messages, else fields with names of wheels or arrays of two; angles go before
-// counts, counts before speeds, speeds before travel. Reference: poses whose topic names motion capture,
-// an odometry whose topic or file names cameras or laser scanners, other poses, trajectories, columns x, y,
-// yaw; never the robot's own odometry.
-Roles find_roles(const std::vector<SurveyedSource>& sources);
+// counts, counts before speeds, speeds before travel. Reference: poses whose topic names motion capture, an
+// odometry whose topic or file names cameras or laser scanners, other poses, trajectories, columns x, y, yaw;
+// never the robot's own odometry. `robot`: the class, where it is known ("": by the wheels); its wheels are
+// then told by number or, where each stands in a quadrant of its own, by names like front_left.
+Roles find_roles(const std::vector<SurveyedSource>& sources, const std::string& robot = "");
 
 }  // namespace odobench::log_import

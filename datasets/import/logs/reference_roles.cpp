@@ -94,6 +94,12 @@ Pose message_pose(const LogSource& source, std::size_t i) {
   return {};
 }
 
+// The x of an orientation or of a velocity is no place.
+bool no_place(const std::string& path) {
+  return names_any(path, {"orientation", "rotation", "quaternion", "angular", "accel", "veloc", "twist",
+                          "covariance", "magnet", "force", "torque"});
+}
+
 // Columns, members of a struct, keys of JSON.
 Pose named_pose(const LogSource& source, std::size_t i) {
   std::array<std::optional<Role>, 3> parts;
@@ -107,6 +113,7 @@ Pose named_pose(const LogSource& source, std::size_t i) {
                      : name.meaning == Meaning::Heading ? 2
                                                         : -1;
     if (part < 0 || name.odometry || parts[static_cast<std::size_t>(part)]) continue;
+    if (part < 2 && no_place(field.path)) continue;
     static constexpr std::array<const char*, 3> targets = {"x", "y", "heading"};
     const bool length = name.unit == "m" || name.unit == "mm" || name.unit == "cm";
     const std::string usual = part == 2 ? "rad" : "m";

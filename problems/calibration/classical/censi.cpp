@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "problems/calibration/classical/methods.hpp"
+#include "problems/calibration/classical/sensor_mount.hpp"
 #include "problems/robots/integration.hpp"
 
 namespace odobench::classical {
@@ -70,23 +71,16 @@ Result result_of(const Drives& drives, const Pieces& pieces, double b) {
   return result;
 }
 
-}  // namespace
+// The constrained minimum over all pieces, with factor > 0.
+struct Mounted {
+  double factor = 1;  // of the robot's own motion
+  Eigen::Vector3d mount;
+  double smallest = 0, next = 0;  // eigenvalues
+};
 
-Result censi(const Drives& drives) {
-  const Pieces pieces = pieces_of(drives);
-  double measured = 0, own = 0;
-  for (const Piece& piece : pieces.list) {
-    measured += piece.moved.dot(piece.sensor.head<2>());
-    own += piece.moved.squaredNorm();
-  }
-  if (!(own > 0)) throw std::invalid_argument("the robot moves in no piece");
-  return result_of(drives, pieces, measured / own);
-}
-
-Result censi_with_mount(const Drives& drives) {
-  const Pieces pieces = pieces_of(drives);
+Mounted mounted(const std::vector<Piece>& pieces) {
   Eigen::Matrix<double, 5, 5> m = Eigen::Matrix<double, 5, 5>::Zero();
-  for (const Piece& piece : pieces.list) {
+  for (const Piece& piece : pieces) {
     const double c = std::cos(piece.sensor[2]), s = std::sin(piece.sensor[2]);
     Eigen::Matrix<double, 2, 5> rows;
     rows << -piece.moved[0], 1 - c, s, piece.sensor[0], -piece.sensor[1],  //
@@ -109,11 +103,52 @@ Result censi_with_mount(const Drives& drives) {
     found = -found;
     u = -u;
   }
-  Result result = result_of(drives, pieces, found[0]);
-  result.mount = Eigen::Vector3d(found[1], found[2], std::atan2(u[1], u[0]));
-  result.figures.push_back({"smallest", "m^2", eigen.eigenvalues()[0]});
-  result.figures.push_back({"next", "m^2", eigen.eigenvalues()[1]});
+  return {
+      found[0], {found[1], found[2], std::atan2(u[1], u[0])}, eigen.eigenvalues()[0], eigen.eigenvalues()[1]};
+}
+
+}  // namespace
+
+Result censi(const Drives& drives) {
+  const Pieces pieces = pieces_of(drives);
+  double measured = 0, own = 0;
+  for (const Piece& piece : pieces.list) {
+    measured += piece.moved.dot(piece.sensor.head<2>());
+    own += piece.moved.squaredNorm();
+  }
+  if (!(own > 0)) throw std::invalid_argument("the robot moves in no piece");
+  return result_of(drives, pieces, measured / own);
+}
+
+Result censi_with_mount(const Drives& drives) {
+  const Pieces pieces = pieces_of(drives);
+  const Mounted found = mounted(pieces.list);
+  Result result = result_of(drives, pieces, found.factor);
+  result.mount = found.mount;
+  result.figures.push_back({"smallest", "m^2", found.smallest});
+  result.figures.push_back({"next", "m^2", found.next});
   return result;
+}
+
+std::optional<Eigen::Vector3d> sensor_mount(const Robot& robot, const std::vector<Recording>& recordings,
+                                            const Options& options) {
+  try {
+    const Drives drives(robot, recordings, options);
+    if (!why_no_turning(drives).empty()) return std::nullopt;
+    std::vector<Piece> pieces;
+    for (const Drive& drive : drives.list())
+      for (std::size_t i = 1; i < drive.rows.size(); ++i) {
+        const std::size_t a = drive.rows[i - 1], b = drive.rows[i];
+        pieces.push_back(
+            {relative(drive.measured.col(static_cast<Index>(a)), drive.measured.col(static_cast<Index>(b))),
+             relative(drive.odometry.col(static_cast<Index>(drive.stamps[a])),
+                      drive.odometry.col(static_cast<Index>(drive.stamps[b])))
+                 .head<2>()});
+      }
+    return mounted(pieces).mount;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace odobench::classical

@@ -115,6 +115,21 @@ void add_determined(const RunRecord& record, std::vector<Clause>& clauses) {
                        record.trust->kind_f, kNotANumber, record.trust->kind_p, ""});
 }
 
+// Of headings without positions.
+void add_ratios(const RunRecord& record, std::vector<Clause>& clauses) {
+  if (!record.trust || !record.trust->ratios_only) return;
+  std::string held;
+  for (const ParameterValue& p : record.parameters)
+    if (!(p.lower < p.upper) && p.unit == "m") held += (held.empty() ? "" : ", ") + p.name;
+  clauses.push_back(
+      {"ratios",
+       fmt::format(
+           "Ratios only: headings tell no length. {} the measure of all others; a straight line of known "
+           "length gives the factor on all of them.",
+           held.empty() ? "The nominal sizes are" : held + ", held at its nominal value, is"),
+       kNotANumber, kNotANumber, kNotANumber, ""});
+}
+
 void add_bounds(const RunRecord& record, std::vector<Clause>& clauses) {
   std::string names;
   std::size_t active = 0;
@@ -159,6 +174,7 @@ std::optional<Table> verdict_table(const Comparison& comparison) {
     return std::nullopt;  // overflowed, or nothing to compare
   std::vector<Clause> clauses{use_clause(best, nominal, total)};
   add_unseen_kinds(*best.record, clauses);
+  add_ratios(*best.record, clauses);
   add_determined(*best.record, clauses);
   add_bounds(*best.record, clauses);
   add_set_aside(*best.record, clauses);

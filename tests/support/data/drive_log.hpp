@@ -20,6 +20,7 @@ struct DriveLog {
   double stop_s = 0;
   double gap_from_s = -1, gap_to_s = -1;  // without capture
   int bits = 0;                           // of the counters: 0, they never run over
+  bool y_to_the_right = false;            // of the capture's frame
   int left_sign = 1;                      // -1: counts backwards
   double begin_s = 1.7e9;                 // of the wheels' clock
   // Of a reference that is another odometry: its heading's walk [rad per square root of a metre], its place.
@@ -104,10 +105,10 @@ struct DriveLog {
     for (std::size_t k = 5; k < all.size(); k += 10) {
       const double t = static_cast<double>(k) * 1e-3;
       if (t > gap_from_s && t < gap_to_s) continue;
-      csv +=
-          fmt::format("{:.6f},{:.4f},{:.4f},{:.5f}\n", begin_s + t + clock_ahead_s,
-                      1e3 * (all[k].x + noise_m * noise(random)), 1e3 * (all[k].y + noise_m * noise(random)),
-                      (all[k].theta + noise_m * noise(random)) * 180 / 3.14159265358979);
+      csv += fmt::format("{:.6f},{:.4f},{:.4f},{:.5f}\n", begin_s + t + clock_ahead_s,
+                         1e3 * (all[k].x + noise_m * noise(random)),
+                         (y_to_the_right ? -1e3 : 1e3) * (all[k].y + noise_m * noise(random)),
+                         (all[k].theta + noise_m * noise(random)) * 180 / 3.14159265358979);
     }
     return csv;
   }
