@@ -59,6 +59,7 @@ void add_options(CLI::App& app, CalibrateOptions& o) {
             "another odometry]",
             [&o](const std::string& text) { o.calibration.cost = cost_kind(text); });
   app.add_flag("--mount", o.calibration.mount, "fit the place of the tracked frame with the parameters");
+  add_model(app, o.calibration);
   app.add_option("--accept", o.accept,
                  "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
       ->type_name("KIND,...")
@@ -100,9 +101,9 @@ ExitCode calibrate_command(const CalibrateOptions& options, const Catalogue& cat
   TerminalWatcher watcher(options.quiet);
   const Calibrated done = calibrate_logs(study_of(options), catalogue, watcher, InterruptGuard::stop());
   std::vector<Table> tables = comparison_tables(done.records, notes_of_best(done.records));
-  static const std::set<std::string> shown_here = {"verdict",   "parameters", "totals",     "determined",
-                                                   "intervals", "new_drives", "validation", "folds",
-                                                   "fit",       "noise",      "noise_kinds"};
+  static const std::set<std::string> shown_here = {
+      "verdict", "parameters", "totals", "determined",  "intervals",    "new_drives", "validation",
+      "folds",   "fit",        "noise",  "noise_kinds", "explanations", "next_drives"};
   std::erase_if(tables, [](const Table& table) { return !shown_here.contains(table.id); });
   print_tables(tables, format);
   for (const std::filesystem::path& file : done.files) note(file.string());
