@@ -32,9 +32,7 @@ double effective_count(const std::vector<double>& errors) {
 }  // namespace
 
 double Discrimination::separation(double n) const {
-  const double a = quadratic(difference, scatter / n + open_a),
-               b = quadratic(difference, scatter / n + open_b);
-  return std::sqrt(std::min(a, b));
+  return std::sqrt(quadratic(difference, scatter / n + open_a + open_b));
 }
 
 double probability_right(double separation) {
@@ -70,35 +68,51 @@ double effective_residuals(const CalibrationProblem& problem, const ConstVectorR
   return sum;
 }
 
-Matrix fitted_covariance(const CalibrationProblem& problem, const ConstVectorRef& z) {
+Matrix fitted_covariance(const RecordingCosts& recordings, const CalibrationProblem& problem,
+                         const ConstVectorRef& z) {
   const std::vector<ParameterInfo>& parameters = problem.parameters();
-  const auto n = static_cast<Eigen::Index>(parameters.size());
-  NormalEquations e;
-  problem.normal_equations(z, e);
   const double cost = problem.cost(z), count = effective_residuals(problem, z);
-  Matrix covariance = Matrix::Zero(n, n);
+  Matrix covariance = Matrix::Zero(z.size(), z.size());
   if (!(cost > 0) || !(count > 0)) return covariance;
-  // In units of the boxes: the rest of the scale is of no concern then.
   std::vector<Eigen::Index> free;
-  Vector sd(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  Vector sd(z.size());  // of the boxes: the unit of all below
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
     const ParameterInfo& p = parameters[static_cast<std::size_t>(i)];
     if (!(p.lower < p.upper)) continue;
     free.push_back(i);
     sd[i] = (p.upper - p.lower) / std::sqrt(12.0);
   }
   const auto m = static_cast<Eigen::Index>(free.size());
-  Matrix information(m, m);
-  for (Eigen::Index i = 0; i < m; ++i)
-    for (Eigen::Index k = 0; k < m; ++k) {
-      const Eigen::Index row = free[static_cast<std::size_t>(i)], column = free[static_cast<std::size_t>(k)];
-      information(i, k) = sd[row] * e.jtj(row, column) * sd[column] * count / cost + (i == k ? 1 : 0);
+  const double variance = cost / count, groups = static_cast<double>(recordings.size());
+  Matrix normal = variance * Matrix::Identity(m, m);  // R
+  std::vector<Matrix> each;
+  Matrix scores(m, static_cast<Eigen::Index>(recordings.size()));
+  for (const NormalEquations& e : recordings.normal_equations(z)) {
+    Matrix one(m, m);
+    const auto n = static_cast<Eigen::Index>(each.size());
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const Eigen::Index row = free[static_cast<std::size_t>(i)];
+      scores(i, n) = sd[row] * e.jtr[row];
+      for (Eigen::Index k = 0; k < m; ++k) {
+        const Eigen::Index column = free[static_cast<std::size_t>(k)];
+        one(i, k) = sd[row] * e.jtj(row, column) * sd[column];
+      }
     }
-  const Matrix inverse = information.llt().solve(Matrix::Identity(m, m));
+    normal += one;
+    each.push_back(std::move(one));
+  }
+  const Vector mean = scores.rowwise().mean();
+  const Matrix inverse = normal.llt().solve(Matrix::Identity(m, m));
+  Matrix inner = variance * variance * inverse * inverse;
+  for (Eigen::Index n = 0; n < scores.cols(); ++n) {
+    const Vector move =
+        Matrix(normal - each[static_cast<std::size_t>(n)]).ldlt().solve(Vector(scores.col(n) - mean));
+    inner += (groups - 1) / groups * move * move.transpose();
+  }
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index k = 0; k < m; ++k) {
       const Eigen::Index row = free[static_cast<std::size_t>(i)], column = free[static_cast<std::size_t>(k)];
-      covariance(row, column) = sd[row] * inverse(i, k) * sd[column];
+      covariance(row, column) = sd[row] * inner(i, k) * sd[column];
     }
   return covariance;
 }

@@ -3,18 +3,19 @@
 // Models a and b, each fitted to the same recordings, predict that a drive ends at e_a and e_b. How far the
 // fits leave each prediction open is P = G C G' with the derivative G of the end pose by the model's free
 // parameters and their covariance C. With the scatter S of a single drive's end, n drives decide by
-//     D^2(n) = min over m in {a, b} of  d'(S / n + P_m)^-1 d,   d = e_a - e_b:
-// what remains between the models when the wrong one may still bend within what the recordings leave it. That
-// is the T-criterion of A. C. Atkinson, V. V. Fedorov, Biometrika 62(1), 1975, with the old recordings as the
-// prior of the wrong model's parameters; D^2 / 2 is the expected logarithm of the Bayes factor between them
-// where P is alike for both (G. E. P. Box, W. J. Hill, Technometrics 9(1), 1967). Choosing the model that
-// predicts the drives better is then right with probability Phi(D / 2).
+//     D^2(n) = d'(S / n + P_a + P_b)^-1 d,   d = e_a - e_b:
+// what is left between the models when both may still bend within what the recordings leave them. That is
+// the T-criterion of A. C. Atkinson, V. V. Fedorov, Biometrika 62(1), 1975, with the old recordings as the
+// prior of the parameters (P_b: what the wrong model may absorb), and with the error of the prediction by
+// the right one (P_a); D^2 / 2 is the expected logarithm of the Bayes factor of two Gaussians with that
+// covariance (G. E. P. Box, W. J. Hill, Technometrics 9(1), 1967). Choosing the model that predicts the
+// drives better is then right with probability Phi(D / 2).
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 
-#include "problems/calibration/calibration_problem.hpp"
+#include "problems/calibration/recording_costs.hpp"
 
 namespace odobench {
 
@@ -45,9 +46,13 @@ double probability_right(double separation);
 // most 400 stamps of each, evenly spread.
 double effective_residuals(const CalibrationProblem& problem, const ConstVectorRef& z);
 
-// C of all parameters at a fit z: (H m / J + B^-1)^-1 with H = J'J, m = effective_residuals() and B the
-// variances of uniform distributions in the boxes; 0 for parameters that are held. A fit without error has C
-// = 0.
-Matrix fitted_covariance(const CalibrationProblem& problem, const ConstVectorRef& z);
+// C of all parameters at a fit z of a calibration, whose recordings are the unit of information, with the box
+// as a prior (variances B of uniform distributions in it, in units of a residual's s^2 = J / m, m =
+// effective_residuals()): with g_n, H_n of each recording, R = s^2 B^-1 and H = sum H_n + R
+//     C = (G-1)/G sum d_n d_n' + s^2 H^-1 R H^-1,   d_n = (H - H_n)^-1 (g_n - mean g),
+// moves when a recording is left out (problems/trust/covariances.hpp) and what the box alone holds. 0 for
+// parameters that are held; a fit without error has C = 0.
+Matrix fitted_covariance(const RecordingCosts& recordings, const CalibrationProblem& problem,
+                         const ConstVectorRef& z);
 
 }  // namespace odobench

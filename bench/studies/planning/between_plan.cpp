@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/range.hpp"
+#include "base/text.hpp"
 #include "bench/catalogue/option_values.hpp"
 #include "bench/studies/context.hpp"
 #include "bench/studies/planning/drive_plan.hpp"
@@ -70,6 +72,11 @@ std::vector<RunRecord> plan_between(const DrivePlan& study, InstructionSet kerne
   const Robot& robot = loaded.dataset->robot;
   const CalibrationProblem& plain = *loaded.calibration;
   for (const ModelFits* one : {&a, &b}) {  // refused before anything is fitted
+    const std::string& kind = one->terms.speed_factor_of;
+    if (std::none_of(plain.recordings().begin(), plain.recordings().end(),
+                     [&](const Recording& r) { return r.trajectory.rfind(kind, 0) == 0; }))
+      throw std::invalid_argument(
+          fmt::format("--between: speed_factor:{}: no trajectory of the recordings begins so", shown(kind)));
     CalibrationOptions options = plain.options();
     options.model = one->terms;
     CalibrationProblem(robot, {plain.recordings().begin(), plain.recordings().end()}, options, kernel);

@@ -52,6 +52,16 @@ DriveCandidate::Spin spin_of(const RobotDrive& drive) {
                                                                    : DriveCandidate::Spin::Partly;
 }
 
+// Drives that never turned tell no noise of turning, and the other way round: a radian counts as a metre.
+void fill_gaps(const std::array<NoiseEstimate, kNoiseTerms>& terms, NoiseModel& model) {
+  constexpr std::array<std::pair<NoiseTerm, NoiseTerm>, 3> kAlike{
+      {{kAlong, kForward}, {kAcross, kSideways}, {kHeading, kTurn}}};
+  for (const auto& [metre, radian] : kAlike) {
+    if (!terms[radian].undetermined.empty()) model.value[radian] = model.value[metre];
+    if (!terms[metre].undetermined.empty()) model.value[metre] = model.value[radian];
+  }
+}
+
 }  // namespace
 
 Recording commanded_recording(const Robot& robot, const RobotDrive& drive, const RobotAbilities& can,
@@ -121,7 +131,8 @@ DrivePredictions::DrivePredictions(const CalibrationProblem& plain, const Robot&
   CalibrationOptions options = plain.options();
   options.model = fits.terms;
   const CalibrationProblem fitted(robot, plain.recordings(), options, plain.kernel());
-  covariance_ = fitted_covariance(fitted, z_);
+  covariance_ =
+      fitted_covariance(RecordingCosts(robot, plain.recordings(), options, plain.kernel()), fitted, z_);
   noise_ = odobench::noise_drives(fitted, z_);
 }
 
@@ -152,8 +163,11 @@ Matrix DrivePredictions::end_jacobian(std::size_t drive) const {
 
 DriveNoise::DriveNoise(const std::vector<NoiseDrive>& drives)
     : fit_(fit_odometry_noise(drives, {false, false, false})) {
-  if (!fit_.refused.empty() || !fit_.separated) return;
-  const NoiseModel total = fit_odometry_noise(drives, {false, false, true}).model;
+  if (!fit_.refused.empty()) return;
+  NoiseModel total = fit_.model;
+  if (fit_.separated) total = fit_odometry_noise(drives, {false, false, true}).model;
+  fill_gaps(fit_.terms, fit_.model);
+  fill_gaps(fit_.terms, total);
   for (std::size_t t = 0; t < static_cast<std::size_t>(kCapturePosition); ++t)
     rest_.value[t] = std::max(0.0, total.value[t] - fit_.model.value[t]);
 }

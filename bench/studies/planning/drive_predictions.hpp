@@ -59,7 +59,8 @@ class DrivePredictions {
   std::vector<NoiseDrive> noise_;
 };
 
-// The noise of drives that are yet to be made, from the errors of those that were.
+// The noise of drives that are yet to be made, from the errors of those that were. What these do not tell of
+// turning counts as it does of travelling, a radian as a metre, and the other way round.
 class DriveNoise {
  public:
   explicit DriveNoise(const std::vector<NoiseDrive>& drives);

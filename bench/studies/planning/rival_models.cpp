@@ -21,9 +21,9 @@ bool before(const RivalDrive& a, const RivalDrive& b) {
   return a.discrimination.separation(1) > b.discrimination.separation(1);
 }
 
-EndPrediction prediction(const DrivePredictions& of, std::size_t drive, const Eigen::Matrix3d& repeating) {
+EndPrediction prediction(const DrivePredictions& of, std::size_t drive) {
   const Matrix jacobian = of.end_jacobian(drive);
-  return {of.end(drive), jacobian * of.covariance() * jacobian.transpose() + repeating};
+  return {of.end(drive), jacobian * of.covariance() * jacobian.transpose()};
 }
 
 }  // namespace
@@ -50,14 +50,14 @@ RivalPlan plan_rivals(const CalibrationProblem& plain, const Robot& robot, const
       [&](std::size_t k) {
         const std::size_t i = known[k];
         const PoseTrack track = better.track(i);
-        const Eigen::Matrix3d repeating = noise.repeating(track);
+        EndPrediction of_a = prediction(first, i);
+        of_a.open += noise.repeating(track);  // counts once, of whichever
         RivalDrive& d = plan.drives[k];
         d.name = candidates[i].name;
         d.description = candidates[i].description;
         d.recorded = candidates[i].recorded;
         d.seconds = 1e-6 * static_cast<double>(candidates[i].recording.time_us.back());
-        d.discrimination = discriminate(prediction(first, i, repeating), prediction(second, i, repeating),
-                                        noise.scatter(track));
+        d.discrimination = discriminate(of_a, prediction(second, i), noise.scatter(track));
         d.repetitions = d.discrimination.repetitions();
       },
       stop);

@@ -188,7 +188,8 @@ OpenClause twice_box_clause(const RunRecord& record) {
                 "Twice the box lowers J by {:.1f} %: the model bends its parameters to fit something it "
                 "does not contain.",
                 100 * fall)
-          : fmt::format("Twice the box lowers J by {:.1g} % only: the data do not ask for it.", 100 * fall);
+          : fmt::format("Twice the box lowers J by {:.1g} % only: the box is not what keeps the errors up.",
+                        100 * fall);
   return {sentence, 100 * fall, twice, "%"};
 }
 
