@@ -165,7 +165,7 @@ TEST(SettlingPlan, ATurnSettlesTheTrackOfARobotThatWentStraight) {
   CalibrationOptions options = truth.options;
   options.model = {};
   int inside = 0;
-  constexpr int kSets = 30;
+  constexpr int kSets = 20;
   for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
     const CalibrationProblem plain(truth.robot,
                                    true_recordings(truth, {"line", "line_back"}, 4, {}, 2 * seed), options);

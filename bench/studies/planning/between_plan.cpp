@@ -40,6 +40,13 @@ void put_rivals(const ModelFits& a, const ModelFits& b, const RivalPlan& plan, R
     record.notes.push_back(fmt::format(
         "Left out, since a factor on drives on the spot says nothing of those that are partly so: {}",
         fmt::join(plan.unknown, ", ")));
+  for (const RivalDrive& d : plan.drives)
+    if (d.recorded && d.repetitions) {
+      record.notes.push_back(
+          fmt::format("Drives that were recorded ({}) tell the two apart already: J speaks for {}", d.name,
+                      a.cost < b.cost ? a.label : b.label));
+      break;
+    }
   for (const RivalDrive& d : plan.drives) {
     record.notes.push_back(fmt::format("{}{} | {}", kRivalDriveNote, d.name, d.description));
     const Discrimination& x = d.discrimination;

@@ -19,7 +19,7 @@ namespace {
 
 // Of the estimate: evaluations of J with derivatives per fit, seconds per sample and evaluation, and the
 // prediction of drives and the noise of the recordings as so many evaluations.
-constexpr double kEvaluationsPerFit = 30, kSample_s = 20e-9, kPlanAsEvaluations = 60;
+constexpr double kEvaluationsPerFit = 30, kSample_s = 32e-9, kPlanAsEvaluations = 60;
 constexpr double kWorthSaying = 0.1;  // of J
 constexpr double kNearlyAsMuch = 0.9;
 constexpr std::size_t kKept = 5;  // drives that decide, in the record
@@ -157,7 +157,7 @@ class NextSteps {
     if (bounds_) trust_.twice_box = std::min(twice[0], own_.cost);
     for (std::size_t i = 0; i < fits_.size(); ++i)
       trust_.explanations.push_back(explanation_of(fits_[i], guesses_[i], own_.cost));
-    if (!decide()) settle();
+    if (!decide()) settle(own_);
     std::stable_sort(trust_.explanations.begin(), trust_.explanations.end(),
                      [](const auto& a, const auto& b) { return a.explained > b.explained; });
   }
@@ -183,6 +183,13 @@ class NextSteps {
         trust_.explanations[*other].explained > kNearlyAsMuch * trust_.explanations[*model].explained;
     const ModelFits& second = rival ? fits_[*other] : own_;
     const RivalPlan plan = plan_rivals(problem_, robot_, fits_[first], second, threads_, stop_);
+    // Two models that recorded drives tell apart are decided: by J.
+    const bool decided = std::any_of(plan.drives.begin(), plan.drives.end(),
+                                     [](const RivalDrive& d) { return d.recorded && d.repetitions; });
+    if (decided) {
+      settle(fits_[first]);
+      return true;
+    }
     NextStepsRecord& next = trust_.next.emplace();
     if (!plan.refused.empty()) {
       next.skipped = plan.refused;
@@ -200,8 +207,8 @@ class NextSteps {
     return true;
   }
 
-  void settle() {
-    const SettlingPlan plan = plan_settling(problem_, robot_, own_, threads_, stop_);
+  void settle(const ModelFits& fits) {
+    const SettlingPlan plan = plan_settling(problem_, robot_, fits, threads_, stop_);
     if (plan.refused.empty() && plan.open.empty()) return;
     NextStepsRecord& next = trust_.next.emplace();
     next.skipped = plan.refused;

@@ -19,7 +19,8 @@ inline constexpr double kNextSteps_s = 2;
 //                 fitted by fit_model()
 //   next          drives that decide between the best of these and what does nearly as well (a factor on
 //                 drives on the spot, at least 90 % of it), else the record's own model (plan_rivals());
-//                 where nothing explains the errors, drives that settle what is open (plan_settling())
+//                 where nothing explains the errors, or recorded drives tell the two apart already,
+//                 drives that settle what is open in the better one (plan_settling())
 // `command`: of the set, "--data=set.json", for the sentence of what was left out. The estimate is made from
 // counts of samples, so that records do not depend on the machine. Throws Interruption.
 void describe_next_steps(const LoadedProblem& loaded, const std::string& command, int threads,

@@ -85,18 +85,22 @@ std::string settle_sentence(const NextStepsRecord& next) {
     return fmt::format(
         "No drive known here settles {} (12 more leave {}): measure {}, or hold {} fixed (lower = upper).",
         open, width, next.open.size() == 1 ? "it" : "them", next.open.size() == 1 ? "it" : "some");
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> list;
+  for (const NextDriveRecord& d : next.drives) {
+    if (list.size() < kNamed || next.drives.size() == kNamed + 1)
+      list.push_back(fmt::format("{} {}", drive_words(d), times(d.repetitions)));
+  }
+  if (list.size() < next.drives.size())
+    list.push_back(fmt::format("{} more (table next_drives)", next.drives.size() - list.size()));
   std::string drives;
-  for (std::size_t i = 0; i < next.drives.size(); ++i)
-    drives += fmt::format("{}{} {}",
-                          i == 0                        ? ""
-                          : i + 1 == next.drives.size() ? " and "
-                                                        : ", ",
-                          drive_words(next.drives[i]), times(next.drives[i].repetitions));
-  return fmt::format("Next: {} {} {}{}.", drives, next.drives.size() == 1 ? "settles" : "settle",
-                     some_of(next.settled),
-                     next.settled.size() == next.open.size()
-                         ? ""
-                         : fmt::format("; {} stay open", next.open.size() - next.settled.size()));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    drives += (i == 0 ? "" : i + 1 == list.size() ? " and " : ", ") + list[i];
+  return fmt::format(
+      "Next: {} {} {}{}.", drives, next.drives.size() == 1 ? "settles" : "settle", some_of(next.settled),
+      next.settled.size() == next.open.size()
+          ? ""
+          : fmt::format("; {} of {} stay open", next.open.size() - next.settled.size(), next.open.size()));
 }
 
 Table explanations_table(const std::string& prefix, const std::string& suffix, const RunRecord& record) {
