@@ -93,11 +93,11 @@ bench/studies/campaign        datasets/ problems/ solvers/ reports/ bench/catalo
 bench/studies/entropy         datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/exporting       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/fusion          datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/inspection
-bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting bench/studies/trust
+bench/studies/importing       datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration bench/studies/exporting bench/studies/trust bench/studies/planning
 bench/studies/inspection      datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
 bench/studies/simulation      datasets/ problems/ reports/ bench/catalogue bench/studies
 bench/studies/trust           datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/calibration
-bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies
+bench/studies/planning        datasets/ problems/ solvers/ reports/ bench/catalogue bench/studies bench/studies/trust
 bench                         datasets/ problems/ solvers/ reports/ bench/
 tests                         datasets/ problems/ solvers/ reports/ tests/ bench/cli.hpp bench/catalogue bench/studies/
 '

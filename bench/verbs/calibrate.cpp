@@ -60,6 +60,7 @@ void add_options(CLI::App& app, CalibrateOptions& o) {
             "another odometry]",
             [&o](const std::string& text) { o.calibration.cost = cost_kind(text); });
   app.add_flag("--mount", o.calibration.mount, "fit the place of the tracked frame with the parameters");
+  add_model(app, o.calibration);
   app.add_option("--accept", o.accept,
                  "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
       ->type_name("KIND,...")

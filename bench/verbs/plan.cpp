@@ -1,10 +1,17 @@
 #include "bench/verbs/verbs.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "base/error.hpp"
+
 #include "bench/catalogue/number_text.hpp"
 #include "bench/console/interrupt.hpp"
 #include "bench/console/table_output.hpp"
 #include "bench/console/terminal_watcher.hpp"
 #include "bench/options/common_options.hpp"
+#include "bench/studies/importing/log_study.hpp"
 #include "bench/studies/planning/drive_plan.hpp"
 #include "bench/studies/run_folder.hpp"
 #include "reports/kinds/planning/planning_tables.hpp"
@@ -14,13 +21,20 @@ namespace {
 
 struct PlanOptions {
   DrivePlan study;
+  std::string data;
   std::string out;  // folder for the record and tables; empty: none
   bool overwrite = false;
   std::string format = "console";
 };
 
 void add_options(CLI::App& app, PlanOptions& o) {
-  add_scenario(app, "--robot", o.study.robot)->required();
+  add_scenario(app, "--robot", o.study.robot);
+  app.add_option("--data", o.data, "a set of recordings in the place of --robot")->type_name("SET.JSON");
+  app.add_option("--between", o.study.between,
+                 "which drives decide between two models that are fitted to the recordings, names as in "
+                 "'bench models', combined by '+', 'plain' for none; with a set of recordings")
+      ->type_name("MODEL,MODEL")
+      ->allow_extra_args(false);
   app.add_option("--drives", o.study.drives,
                  "drives, a name once per time it is driven, or 'none'; a comma list [those of the scenario]")
       ->type_name("LIST")
@@ -42,12 +56,35 @@ void add_options(CLI::App& app, PlanOptions& o) {
   add_format(app, o.format);
 }
 
+// --data stands for --robot; --between leaves nothing to the other options.
+DrivePlan study_of(const PlanOptions& o) {
+  DrivePlan study = o.study;
+  if (study.robot.empty() == o.data.empty())
+    throw std::invalid_argument(study.robot.empty()
+                                    ? "--robot or --data: neither is given, expected one of them"
+                                    : "--robot and --data: both are given, expected one of them");
+  if (!o.data.empty()) {
+    if (!is_dataset(o.data))
+      throw DataError(fmt::format("--data={}: found something else, expected a data set (set.json)", o.data));
+    study.robot = o.data;
+  }
+  if (study.between.empty()) return study;
+  if (!study.drives.empty() || !study.candidates.empty())
+    throw std::invalid_argument(
+        "--between: it takes every drive that is known, without --drives and --candidates");
+  if (!is_dataset(study.robot))
+    throw DataError(fmt::format(
+        "--robot={}: found no recordings, expected a data set (set.json), which --between fits its models to",
+        study.robot));
+  return study;
+}
+
 ExitCode plan_command(const PlanOptions& o) {
   const Format format = parse_format(o.format);
   RunFolder folder(o.out, o.overwrite);
   folder.require_free();
   TerminalWatcher watcher;
-  const std::vector<RunRecord> records = plan_drives(o.study, watcher, InterruptGuard::stop());
+  const std::vector<RunRecord> records = plan_drives(study_of(o), watcher, InterruptGuard::stop());
   const std::vector<Table> tables = planning_tables(records.front(), !o.study.candidates.empty());
   folder.keep(records, tables, watcher);
   print_tables(tables, format);

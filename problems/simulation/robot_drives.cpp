@@ -148,6 +148,21 @@ std::vector<RobotDrive> known_drives(const RobotAbilities& a) {
   return drives;
 }
 
+std::vector<RobotDrive> small_circles(const RobotAbilities& a) {
+  std::vector<RobotDrive> drives;
+  for (const double radius : {0.1, 0.2, 0.3, 0.5, 1.0}) {
+    if (radius < a.least_radius) continue;
+    for (const double sense : {-1.0, 1.0}) {
+      const double omega = std::min(kSpeed / radius, kTurn);  // wheels go no faster than on the spot
+      drives.push_back({fmt::format("circle_{:g}m_{}", radius, sense > 0 ? "ccw" : "cw"),
+                        fmt::format("a circle of {:g} m radius, {}", radius,
+                                    sense > 0 ? "counter-clockwise" : "clockwise"),
+                        {{radius * omega, 0, sense * omega, 2 * kPi / omega}}});
+    }
+  }
+  return drives;
+}
+
 Matrix twists_of(const RobotDrive& drive, const RobotAbilities& can) {
   std::vector<Eigen::Vector3d> list(kStanding, Eigen::Vector3d::Zero());
   const bool plain = can.ahead == Eigen::Vector3d(1, 0, 0) && can.turn == Eigen::Vector3d(0, 0, 1);

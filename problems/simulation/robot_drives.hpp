@@ -38,6 +38,10 @@ std::vector<RobotDrive> standard_drives(const RobotAbilities& can);
 // diagonals and circles with a sideways part where possible. What plans choose from.
 std::vector<RobotDrive> known_drives(const RobotAbilities& can);
 
+// Circles of 0.1, 0.2, 0.3, 0.5 and 1 m radius in both senses, those of them that the robot can do: between
+// the turn on the spot and the wide circles, where models of contacts and of slip part.
+std::vector<RobotDrive> small_circles(const RobotAbilities& can);
+
 // Twists of the intervals of kRobotStep, 3 x N, with half a second of standing before and after.
 Matrix twists_of(const RobotDrive& drive, const RobotAbilities& can);
 

@@ -46,6 +46,76 @@ std::vector<std::string> texts_from(const JsonNode& node) {
   return texts;
 }
 
+json explanation_json(const ExplanationRecord& e) {
+  json out{{"model", e.model},
+           {"words", e.words},
+           {"cost", finite_or_null(e.cost)},
+           {"explained", finite_or_null(e.explained)},
+           {"of_the_robot", e.robot},
+           {"on_bound", e.on_bound}};
+  if (!e.parameter.empty()) {
+    out["parameter"] = e.parameter;
+    out["unit"] = e.unit;
+    out["value"] = finite_or_null(e.value);
+  }
+  return out;
+}
+
+ExplanationRecord explanation_from(const JsonNode& node) {
+  ExplanationRecord e;
+  e.model = node.at("model").text();
+  e.words = node.at("words").text();
+  e.cost = node.at("cost").stored_number();
+  e.explained = node.at("explained").stored_number();
+  e.robot = node.at("of_the_robot").boolean();
+  e.on_bound = node.at("on_bound").boolean();
+  e.parameter = node.text_or_empty("parameter");
+  e.unit = node.text_or_empty("unit");
+  if (const auto value = node.find("value")) e.value = value->stored_number();
+  return e;
+}
+
+json next_json(const NextStepsRecord& next) {
+  if (!next.skipped.empty()) return {{"skipped", next.skipped}};
+  json out{{"first_words", next.first_words},
+           {"second_words", next.second_words},
+           {"open", list_of(next.open)},
+           {"settled", list_of(next.settled)},
+           {"largest_before", finite_or_null(next.largest_before)},
+           {"largest_after", finite_or_null(next.largest_after)},
+           {"drives", json::array()}};
+  for (const NextDriveRecord& d : next.drives)
+    out["drives"].push_back({{"purpose", d.purpose},
+                             {"first", d.first},
+                             {"second", d.second},
+                             {"drive", d.drive},
+                             {"description", d.description},
+                             {"recorded", d.recorded},
+                             {"repetitions", d.repetitions},
+                             {"separation", finite_or_null(d.separation)},
+                             {"probability", finite_or_null(d.probability)},
+                             {"seconds", finite_or_null(d.seconds)}});
+  return out;
+}
+
+NextStepsRecord next_from(const JsonNode& node) {
+  NextStepsRecord next;
+  next.skipped = node.text_or_empty("skipped");
+  if (!next.skipped.empty()) return next;
+  next.first_words = node.at("first_words").text();
+  next.second_words = node.at("second_words").text();
+  next.open = texts_from(node.at("open"));
+  next.settled = texts_from(node.at("settled"));
+  next.largest_before = node.at("largest_before").stored_number();
+  next.largest_after = node.at("largest_after").stored_number();
+  for (const JsonNode& d : node.at("drives").elements())
+    next.drives.push_back({d.at("purpose").text(), d.at("first").text(), d.at("second").text(),
+                           d.at("drive").text(), d.at("description").text(), d.at("recorded").boolean(),
+                           d.at("repetitions").small_integer(), d.at("separation").stored_number(),
+                           d.at("probability").stored_number(), d.at("seconds").stored_number()});
+  return next;
+}
+
 }  // namespace
 
 IntervalRecord::IntervalRecord()
@@ -85,6 +155,9 @@ json to_json(const TrustRecord& trust) {
     out["drives"].push_back(with_interval(
         {{"drive", d.drive}, {"what", d.what}, {"unit", d.unit}, {"scatter", finite_or_null(d.scatter)}},
         d.interval));
+  if (trust.twice_box) out["twice_box"] = finite_or_null(*trust.twice_box);
+  for (const ExplanationRecord& e : trust.explanations) out["explanations"].push_back(explanation_json(e));
+  if (trust.next) out["next"] = next_json(*trust.next);
   return out;
 }
 
@@ -107,6 +180,10 @@ TrustRecord trust_from(const JsonNode& node) {
   for (const JsonNode& d : node.at("drives").elements())
     trust.drives.push_back({d.at("drive").text(), d.at("what").text(), d.at("unit").text(),
                             d.at("scatter").stored_number(), interval_from(d)});
+  if (const auto twice = node.find("twice_box")) trust.twice_box = twice->stored_number();
+  if (const auto list = node.find("explanations"))
+    for (const JsonNode& e : list->elements()) trust.explanations.push_back(explanation_from(e));
+  if (const auto next = node.find("next")) trust.next = next_from(*next);
   trust.remarks = texts_from(node.at("remarks"));
   trust.sentences = texts_from(node.at("sentences"));
   return trust;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,38 @@ struct DriveErrorRecord {
   IntervalRecord interval;
 };
 
+// How much of J a richer model explains.
+struct ExplanationRecord {
+  std::string model, words;  // "least_squares+contact_offset", "a contact offset"
+  double cost = 0;           // J with it
+  double explained = 0;      // share of J that is gone
+  bool robot = true;         // of the robot; else a competitor without a meaning
+  bool on_bound = false;     // one of its own parameters is
+  std::string parameter, unit;
+  double value = 0;  // where it has a single one
+};
+
+// A drive to make next, alone or with the others of the list.
+struct NextDriveRecord {
+  std::string purpose;        // "decide" between two models, "settle" parameters
+  std::string first, second;  // the models, as 'bench plan --between' takes them
+  std::string drive, description;
+  bool recorded = false;                   // it is one of the set
+  int repetitions = 0;                     // 0: however often, it does not do
+  double separation = 0, probability = 0;  // of deciding: of one drive; of the right choice after them
+  double seconds = 0;                      // of one
+};
+
+// What there is to drive next: models that are told apart, in words; parameters that are settled or stay
+// open.
+struct NextStepsRecord {
+  std::string skipped;  // why nothing was planned; everything else is empty then
+  std::string first_words, second_words;
+  std::vector<std::string> open, settled;
+  double largest_before = 0, largest_after = 0;  // of those open: 95 % half width over that of the box
+  std::vector<NextDriveRecord> drives;  // to decide: best first, each does alone; to settle: together
+};
+
 struct TrustRecord {
   int recordings = 0, kinds = 0;
   bool exact_hessian = false;
@@ -49,6 +82,9 @@ struct TrustRecord {
   std::vector<DeterminedRecord> determined;
   std::vector<ParameterIntervalRecord> parameters;
   std::vector<DriveErrorRecord> drives;
+  std::optional<double> twice_box;  // J in a box twice as wide, where a parameter is on a bound
+  std::vector<ExplanationRecord> explanations;
+  std::optional<NextStepsRecord> next;
   std::vector<std::string> remarks, sentences;  // of the numbers; below the tables
 
   TrustRecord();

@@ -12,6 +12,7 @@
 #include "bench/studies/trust_figures.hpp"
 #include "problems/simulation/robot_demo.hpp"
 #include "reports/kinds/calibration/calibration_tables.hpp"
+#include "reports/kinds/trust/next_steps_tables.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/data/report_records.hpp"
 #include "tests/support/data/vitko_problem.hpp"
@@ -81,6 +82,59 @@ TEST(TrustRecords, ComeBackToTheBit) {
       EXPECT_EQ(std::isfinite(a.interval.half_width), recordings == 100);
     }
   }
+}
+
+// What calibrate adds: explanations, the wide box, what to drive next; to the bit, and in the sentences.
+TEST(TrustRecords, WhatIsLeftOpenComesBackAndIsSaid) {
+  RunRecord record = record_of(loaded_demo("differential"), "lm");
+  ASSERT_TRUE(record.trust);
+  EXPECT_EQ(to_json_line(record).find("explanations"),
+            std::string::npos);  // records without are as they were
+  TrustRecord& trust = *record.trust;
+  trust.twice_box = *record.cost * 0.75;
+  trust.explanations = {
+      {"contact_offset", "a contact offset", *record.cost * 0.2, 0.8, true, false, "offset", "m", 7e-3},
+      {"speed_factor:turn", "slip", *record.cost * 0.5, 0.5, false, false, "", "", 0},
+      {"steering_zeros", "zeros", *record.cost * 0.1, 0.9, true, true, "", "", 0}};
+  NextStepsRecord& next = trust.next.emplace();
+  next.first_words = "a contact offset";
+  next.second_words = "the model as it is";
+  next.drives = {
+      {"decide", "contact_offset", "plain", "circle_0.2m_cw", "a small circle", false, 2, 3.1, 0.97, 14},
+      {"decide", "contact_offset", "plain", "circle_0.2m_ccw", "a small circle", false, 2, 3, 0.97, 14}};
+  const RunRecord again = record_from(JsonNode::parse(to_json_line(record), "f"));
+  EXPECT_EQ(to_json_line(again), to_json_line(record));
+  ASSERT_TRUE(again.trust->next);
+  EXPECT_EQ(explanation_clause(again).sentence,
+            "A contact offset explains 80 % of what is left ('bench models' compares more).");
+  EXPECT_NEAR(explanation_clause(again).against, 50, 1e-12);
+  EXPECT_NEAR(twice_box_clause(again).value, 25, 1e-12);
+  EXPECT_NE(twice_box_clause(again).sentence.find("lowers J by 25.0 %"), std::string::npos);
+  // The mirror image of a drive is no second one.
+  EXPECT_EQ(
+      next_drives_clause(again).sentence,
+      "Next: circle_0.2m_cw (a small circle) twice decides between a contact offset and the model as it is "
+      "('bench plan --data=SET.JSON --between=contact_offset,plain').");
+  EXPECT_EQ(next_drives_clause(again).value, 2);
+  trust.next.emplace().open = {"a1", "b1"};
+  trust.next->largest_after = 0.8;
+  EXPECT_NE(next_drives_clause(record).sentence.find("No drive known here settles a1 and b1"),
+            std::string::npos);
+  trust.next->settled = {"a1"};
+  trust.next->drives = {{"settle", "", "", "line", "", true, 3, 0, 0, 10}};
+  EXPECT_EQ(next_drives_clause(record).sentence, "Next: line again 3 times settles a1; 1 of 2 stay open.");
+  trust.next.emplace().skipped = "it takes long";
+  EXPECT_EQ(next_drives_clause(record).sentence, "What to drive next was not looked for: it takes long.");
+  EXPECT_EQ(to_json_line(record_from(JsonNode::parse(to_json_line(record), "f"))), to_json_line(record));
+  // Half widths of single parameters, from the record's own.
+  double best = 1e9;
+  for (const ParameterIntervalRecord& p : trust.parameters)
+    for (const ParameterValue& v : record.parameters)
+      if (v.name == p.name) best = std::min(best, 100 * p.interval.half_width / std::abs(v.nominal));
+  EXPECT_NEAR(single_parameters_clause(record).value, best, 1e-12);
+  for (ParameterIntervalRecord& p : trust.parameters) p.interval.half_width = 0.08;
+  EXPECT_NE(single_parameters_clause(record).sentence.find("No single parameter is known better than"),
+            std::string::npos);
 }
 
 TEST(TrustRecords, OldDeviationsGetTheNameThatSaysWhatTheyAre) {

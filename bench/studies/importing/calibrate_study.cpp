@@ -13,6 +13,7 @@
 #include "bench/studies/exporting/robot_export.hpp"
 #include "bench/studies/importing/log_proposal.hpp"
 #include "bench/studies/importing/log_study.hpp"
+#include "bench/studies/planning/next_steps.hpp"
 #include "bench/studies/records.hpp"
 #include "bench/studies/report_study.hpp"
 #include "bench/studies/run_folder.hpp"
@@ -39,6 +40,22 @@ std::string find_map(const CalibrateStudy& study, Watcher& watcher, const Stop& 
   return fill_map(proposal.map, study.answers);
 }
 
+// Of the runs with trust in their records; an interruption leaves the rest without.
+bool find_next_steps(const std::vector<LoadedProblem>& loaded, const std::string& command, const Stop& stop,
+                     std::vector<RunRecord>& records) {
+  bool changed = false;
+  try {
+    for (const LoadedProblem& one : loaded)
+      for (RunRecord& r : records)
+        if (r.kind == "run" && r.trust && r.problem == one.name()) {
+          describe_next_steps(one, command, 0, stop, r);
+          changed = true;
+        }
+  } catch (const Interruption&) {  // what is in the records stays
+  }
+  return changed;
+}
+
 SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalogue& catalogue,
                   Watcher& watcher, const Stop& stop) {
   RunFolder folder(study.out / "results", study.overwrite);
@@ -50,7 +67,14 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalo
   solver.calibration = study.calibration;
   const TrustChoice choice{study.validation};
   TrustStudy trust(choice, solver, catalogue, folder, watcher, stop);
-  SolverRuns runs = run_solvers(trust.with(solver), catalogue, folder, watcher, stop);
+  SolverStudy judged = trust.with(solver);
+  const std::string command = fmt::format("--data={}", set.string());
+  judged.judge = [&, validate = judged.judge](const std::vector<LoadedProblem>& loaded,
+                                              std::vector<RunRecord>& records) {
+    const bool validated = validate(loaded, records);
+    return find_next_steps(loaded, command, stop, records) || validated;
+  };
+  SolverRuns runs = run_solvers(judged, catalogue, folder, watcher, stop);
   folder.save(comparison_tables(runs.records, notes_of_best(runs.records)));
   return runs;
 }

@@ -98,6 +98,7 @@ void require_and_announce(simulate::RecordingScenario s, const DrivePlan& study,
 
 std::vector<RunRecord> plan_drives(const DrivePlan& study, Watcher& watcher, const Stop& stop) {
   const InstructionSet kernel = kernel_in_force(study.kernel);
+  if (!study.between.empty()) return plan_between(study, kernel, watcher, stop);
   if (is_robot(study.robot)) return plan_robot(study, kernel, watcher, stop);
   require_known(study.robot);
   const simulate::RecordingScenario scenario = load_recording_scenario(study.robot);

@@ -17,10 +17,12 @@ namespace {
 
 std::vector<RobotDrive> chosen(const std::vector<std::string>& lists, const RobotAbilities& can) {
   if (lists.empty()) return standard_drives(can);
-  const std::vector<RobotDrive> all = known_drives(can);
+  std::vector<RobotDrive> all = known_drives(can);
   std::vector<RobotDrive> drives;
-  for (const std::string& name : comma_items(lists)) {
+  for (const std::string& name : comma_items(lists))
     if (name == "all") return all;
+  for (RobotDrive& d : small_circles(can)) all.push_back(std::move(d));
+  for (const std::string& name : comma_items(lists)) {
     std::vector<std::string> names;
     std::string list;
     const RobotDrive* found = nullptr;

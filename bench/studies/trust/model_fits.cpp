@@ -145,6 +145,7 @@ void fit_model(const CalibrationProblem& plain, const Robot& robot, const std::v
     for (std::size_t n = 0; n < plain.recordings().size(); ++n)
       fits.start_headings.push_back(form->start_shift(n, fits.z)[2]);
 
+  if (repetitions.empty() && trajectories.empty()) return;
   std::vector<Vector> near;
   for (const Fit& optimum : optima) near.push_back(optimum.z);
   if (valleys) near.push_back(problem.start());

@@ -32,41 +32,6 @@ std::vector<std::string> split_model(const std::string& text) {
   return names;
 }
 
-// The lag that inspection measures, to the millisecond; 0 where it finds none, or one per recording.
-double measured_lag(const LoadedProblem& loaded, int threads) {
-  try {
-    for (const inspection::Finding& f :
-         inspection::inspect(loaded.dataset->robot, loaded.calibration->recordings(), threads))
-      if (f.kind == "reference_lag" && f.figures.count("lowest") == 0)
-        return std::round(1000 * f.figures.at("lag")) / 1000;
-  } catch (const std::invalid_argument&) {
-  } catch (const DataError&) {
-  }
-  return 0;
-}
-
-// Whole trajectories on the spot, by how they begin: "rotation" of rotation_ccw and rotation_cw; "" for none.
-std::string turning_kind(const std::vector<Recording>& recordings) {
-  std::set<std::string> turning, others;
-  for (const Recording& r : recordings) {
-    const Reference& ref = r.reference;
-    double path = 0, turned = 0;
-    for (std::size_t k = 1; k < ref.x.size(); ++k) {
-      path = std::max(path, std::hypot(ref.x[k] - ref.x[0], ref.y[k] - ref.y[0]));
-      turned = std::max(turned, std::abs(ref.theta[k] - ref.theta[0]));
-    }
-    (turned > 1 && path < 0.05 * turned ? turning : others).insert(r.trajectory);
-  }
-  if (turning.empty() || others.empty()) return "";
-  const std::string& first = *turning.begin();
-  const std::string common = first.substr(0, first.find('_'));
-  const auto begins = [&](const std::string& name) { return name.rfind(common, 0) == 0; };
-  if (std::all_of(turning.begin(), turning.end(), begins) &&
-      std::none_of(others.begin(), others.end(), begins))
-    return common;
-  return others.count(first) == 0 ? first : "";
-}
-
 RunRecord record_of(const ModelFits& fits, const LoadedProblem& loaded, const RunContext& context) {
   RunRecord r =
       study_record(kModelsProblem, loaded.dataset_name(), fits.label, fits.parameters, fits.z, context);
@@ -118,6 +83,43 @@ RunRecord nominal_record(const LoadedProblem& loaded, const RunContext& context)
 
 }  // namespace
 
+ModelTerms model_of_text(const std::string& text) {
+  return model_terms(split_model(text));
+}
+
+double measured_lag(const LoadedProblem& loaded, int threads) {
+  try {
+    for (const inspection::Finding& f :
+         inspection::inspect(loaded.dataset->robot, loaded.calibration->recordings(), threads))
+      if (f.kind == "reference_lag" && f.figures.count("lowest") == 0)
+        return std::round(1000 * f.figures.at("lag")) / 1000;
+  } catch (const std::invalid_argument&) {
+  } catch (const DataError&) {
+  }
+  return 0;
+}
+
+std::string turning_kind(const std::vector<Recording>& recordings) {
+  std::set<std::string> turning, others;
+  for (const Recording& r : recordings) {
+    const Reference& ref = r.reference;
+    double path = 0, turned = 0;
+    for (std::size_t k = 1; k < ref.x.size(); ++k) {
+      path = std::max(path, std::hypot(ref.x[k] - ref.x[0], ref.y[k] - ref.y[0]));
+      turned = std::max(turned, std::abs(ref.theta[k] - ref.theta[0]));
+    }
+    (turned > 1 && path < 0.05 * turned ? turning : others).insert(r.trajectory);
+  }
+  if (turning.empty() || others.empty()) return "";
+  const std::string& first = *turning.begin();
+  const std::string common = first.substr(0, first.find('_'));
+  const auto begins = [&](const std::string& name) { return name.rfind(common, 0) == 0; };
+  if (std::all_of(turning.begin(), turning.end(), begins) &&
+      std::none_of(others.begin(), others.end(), begins))
+    return common;
+  return others.count(first) == 0 ? first : "";
+}
+
 std::vector<std::string> suitable_models(const CalibrationProblem& plain, const Robot& robot, double lag) {
   const bool mean = robot.table.rule == TwistRule::Mean;
   const std::string ls = mean ? "least_squares+" : "",
@@ -145,7 +147,7 @@ std::vector<std::string> suitable_models(const CalibrationProblem& plain, const 
   for (const std::string& text : wanted) {
     CalibrationOptions options = plain.options();
     try {
-      options.model = model_terms(split_model(text));
+      options.model = model_of_text(text);
       if (options.mount && (options.model.mount || options.model.lever_arm || options.model.heading_offset))
         continue;
       CalibrationProblem(robot, one, options, plain.kernel());
@@ -173,7 +175,7 @@ std::vector<RunRecord> compare_models(const ModelsStudy& study, Watcher& watcher
                           trajectories = leave_one_trajectory_out(drives).folds;
   std::vector<ModelFits> fits(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {  // refused before anything is fitted
-    fits[i].terms = model_terms(split_model(models[i]));
+    fits[i].terms = model_of_text(models[i]);
     fits[i].label = models[i].empty() ? "plain" : models[i];
     CalibrationOptions options = plain.options();
     options.model = fits[i].terms;

@@ -20,6 +20,16 @@ struct ModelsStudy {
   int threads = 0;  // 0: one per core; results do not depend on it
 };
 
+// The model that names joined by '+' say; "" for none. Throws as model_terms().
+ModelTerms model_of_text(const std::string& text);
+
+// The lag that inspection measures, to the millisecond, s; 0 where it finds none, or one per recording.
+double measured_lag(const LoadedProblem& loaded, int threads);
+
+// Trajectories on the spot, by how they begin: "rotation" of rotation_ccw and rotation_cw; "" for none, and
+// where all are.
+std::string turning_kind(const std::vector<Recording>& recordings);
+
 // Model lists that suit the robot and its recordings, the plain one ("") first: twists, contacts, zeros, the
 // tracked frame, free starts, the lag that cross-correlation measures (`lag`, s; 0: none) held, one factor
 // on drives that turn on the spot. Those that the robot has nothing for are left out.

@@ -19,6 +19,7 @@
 #include "reports/kinds/calibration/verdict_table.hpp"
 #include "reports/kinds/optimisers/optimiser_tables.hpp"
 #include "reports/kinds/trust/loss_tables.hpp"
+#include "reports/kinds/trust/next_steps_tables.hpp"
 #include "reports/kinds/trust/noise_tables.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_tables.hpp"
@@ -119,6 +120,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
     table->notes.insert(table->notes.end(), notes.begin(), notes.end());
     append_if(std::move(table), section);
     append(trust_tables(c), section);
+    append(next_steps_tables(c), section);
   }
   return section;
 }

@@ -9,6 +9,7 @@
 #include "reports/kinds/calibration/table_parts.hpp"
 #include "reports/kinds/calibration/verdict_table.hpp"
 #include "reports/kinds/trust/loss_tables.hpp"
+#include "reports/kinds/trust/next_steps_tables.hpp"
 #include "reports/kinds/trust/noise_tables.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_tables.hpp"
@@ -59,6 +60,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     append(tables, weighted_down_table(comparison));
     append(tables, set_aside_table(comparison));
     for (Table& table : trust_tables(comparison)) tables.push_back(std::move(table));
+    for (Table& table : next_steps_tables(comparison)) tables.push_back(std::move(table));
     if (has_costs(comparison)) tables.push_back(std::move(solvers));
     append(tables, repeats_table(comparison));
   }

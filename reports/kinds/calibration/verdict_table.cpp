@@ -9,6 +9,7 @@
 
 #include "base/range.hpp"
 #include "reports/kinds/calibration/overview_tables.hpp"
+#include "reports/kinds/trust/next_steps_tables.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_record.hpp"
 #include "reports/kinds/trust/validation_sentences.hpp"
@@ -145,6 +146,11 @@ void add_bounds(const RunRecord& record, std::vector<Clause>& clauses) {
                      static_cast<double>(active), kNotANumber, static_cast<double>(all), ""});
 }
 
+void add_open(const char* about, const OpenClause& open, std::vector<Clause>& clauses) {
+  if (!open.sentence.empty())
+    clauses.push_back({about, open.sentence, open.value, kNotANumber, open.against, open.unit});
+}
+
 void add_set_aside(const RunRecord& record, std::vector<Clause>& clauses) {
   std::string names;
   std::size_t count = 0;
@@ -176,8 +182,12 @@ std::optional<Table> verdict_table(const Comparison& comparison) {
   add_unseen_kinds(*best.record, clauses);
   add_ratios(*best.record, clauses);
   add_determined(*best.record, clauses);
+  add_open("explains", explanation_clause(*best.record), clauses);
   add_bounds(*best.record, clauses);
+  add_open("twice_box", twice_box_clause(*best.record), clauses);
+  add_open("single", single_parameters_clause(*best.record), clauses);
   add_set_aside(*best.record, clauses);
+  add_open("next", next_drives_clause(*best.record), clauses);
 
   Table table;
   table.id = comparison.id_prefix + "verdict";

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "reports/kinds/planning/rival_tables.hpp"
 #include "reports/records/series.hpp"
 
 namespace odobench {
@@ -156,6 +157,7 @@ Table proposals_table(const RunRecord& record) {
 }  // namespace
 
 std::vector<Table> planning_tables(const RunRecord& record, bool proposals) {
+  if (has_rivals(record)) return rival_tables(record);
   std::vector<Table> tables{parameters_table(record), directions_table(record)};
   if (Table undetermined = undetermined_table(record); !undetermined.rows.empty())
     tables.push_back(std::move(undetermined));
