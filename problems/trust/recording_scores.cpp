@@ -49,6 +49,23 @@ RecordingScores restricted(const RecordingScores& scores, const std::vector<Inde
   return fewer;
 }
 
+bool on_bound(const ParameterInfo& parameter, double value) {
+  constexpr double kAtBound = 1e-6;  // of the width of a box
+  const double near = kAtBound * (parameter.upper - parameter.lower);
+  return parameter.lower < parameter.upper &&
+         (value <= parameter.lower + near || value >= parameter.upper - near);
+}
+
+Vector half_gradient(const RecordingCosts& costs, const Vector& z) {
+  Vector sum = Vector::Zero(z.size());
+  NormalEquations e;
+  for (std::size_t n = 0; n < costs.size(); ++n) {
+    costs[n].normal_equations(z, e);
+    sum += e.jtr;
+  }
+  return sum;
+}
+
 KindsOfDrives kinds_of(const std::vector<std::string>& kinds) {
   KindsOfDrives all;
   for (const std::string& kind : kinds) {

@@ -17,15 +17,9 @@ using Eigen::Index;
 
 namespace {
 
-constexpr double kAtBound = 1e-6;       // of the width of a box
 constexpr double kStraight = 10;        // m
 constexpr double kPoseStep = 1e-6;      // relative
 constexpr std::size_t kManyKinds = 12;  // from which intervals may be taken between kinds
-
-bool on_bound(const ParameterInfo& p, double value) {
-  const double near = kAtBound * (p.upper - p.lower);
-  return p.lower < p.upper && (value <= p.lower + near || value >= p.upper - near);
-}
 
 // Everything that several parts of the result are made of.
 struct Setting {
@@ -40,16 +34,6 @@ struct Setting {
     return free.scale.cwiseProduct(Vector(gradient(free.parameters)));
   }
 };
-
-Vector half_gradient(const RecordingCosts& costs, const Vector& z) {
-  Vector sum = Vector::Zero(z.size());
-  NormalEquations e;
-  for (std::size_t n = 0; n < costs.size(); ++n) {
-    costs[n].normal_equations(z, e);
-    sum += e.jtr;
-  }
-  return sum;
-}
 
 Setting prepare(const RecordingCosts& costs, const ConstVectorRef& z, Trust& trust) {
   Setting s{costs, z, recording_scores(costs, z), {}, {}};

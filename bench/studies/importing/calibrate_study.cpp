@@ -50,7 +50,8 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, bool drifts,
     watcher.note(
         fmt::format("the reference drifts: --cost=segments, of {:g} m", solver.calibration.distance));
   }
-  const TrustChoice choice{study.validation};
+  TrustChoice choice;
+  choice.validation = study.validation;
   TrustStudy trust(choice, solver, catalogue, folder, watcher, stop);
   SolverRuns runs = run_solvers(trust.with(solver), catalogue, folder, watcher, stop);
   folder.save(comparison_tables(runs.records, notes_of_best(runs.records)));

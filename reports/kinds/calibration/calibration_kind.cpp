@@ -18,6 +18,7 @@
 #include "reports/kinds/optimisers/optimiser_tables.hpp"
 #include "reports/kinds/trust/loss_tables.hpp"
 #include "reports/kinds/trust/noise_tables.hpp"
+#include "reports/kinds/trust/profile_record.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_tables.hpp"
 
@@ -134,6 +135,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
     table->notes.insert(table->notes.end(), notes.begin(), notes.end());
     append_if(std::move(table), section);
     append(trust_tables(c), section);
+    add_profile_figures(c, prefix_of(c), section, document);
   }
   return section;
 }
