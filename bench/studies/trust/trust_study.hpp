@@ -17,10 +17,10 @@ namespace odobench {
 inline constexpr double kSameOptimum = 1e-6;
 
 // Of each calibration among the problems: one fit by `lm` from the lowest run, its folds, with --bootstrap
-// its replicates and with --profile J along its parameters. The figures go to the records that tables show, and
-// to the lowest of each row, whose J is that of the fit within kSameOptimum; replicates and profiles to the
-// lowest run, combinations to all of them. With ValidationChoice::own_solvers the lowest run of every row is
-// validated by fits of its own solver from the nominal parameters instead.
+// its replicates and with --profile J along its parameters. The figures go to the records that tables show,
+// and to the lowest of each row, whose J is that of the fit within kSameOptimum; replicates and profiles to
+// the lowest run, combinations to all of them. With ValidationChoice::own_solvers the lowest run of every row
+// is validated by fits of its own solver from the nominal parameters instead.
 //
 // What keeps a validation from being made is said to the watcher: as a note, as a warning where it was asked
 // for. A result that is worse than the nominal parameters on recordings left out is a warning.
