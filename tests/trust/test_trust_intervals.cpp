@@ -3,12 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <Eigen/LU>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/catalogue/scenarios.hpp"
 #include "problems/simulation/demo_generator.hpp"
 #include "problems/simulation/robot_demo.hpp"
+#include "problems/simulation/simulated_set.hpp"
 #include "problems/trust/trust.hpp"
 #include "solvers/solve.hpp"
 #include "tests/support/data/report_records.hpp"
@@ -401,6 +406,36 @@ TEST(Trust, TellsCombinationsButNotWhatIsInThem) {
     if (p.name != "lx" && p.name != "ly") continue;
     EXPECT_THAT(p.interval.refused, ::testing::AnyOf(NoInterval::Undetermined, NoInterval::WiderThanBox,
                                                      NoInterval::BoundActive));
+  }
+}
+
+// What Euler's rule does to a number is what fits by both rules say; drives that were made by it say nothing.
+TEST(Trust, SaysWhatTheRuleOfIntegrationMoves) {
+  for (const bool off_nominal : {true, false}) {
+    const Dataset set = off_nominal
+                            ? simulate::simulate_set(load_recording_scenario("off_nominal"), 1001).dataset
+                            : make_demo_dataset();
+    Trust by_rule[2];
+    for (const auto rule : {robots::IntegrationRule::Euler, robots::IntegrationRule::Arc}) {
+      CalibrationOptions options;
+      options.rule = rule;
+      const Problem problem(CalibrationProblem(set.robot, set.recordings, options));
+      const Vector z = solve(problem, {"lm", {}}, problem.start(), {}).x;
+      by_rule[rule == robots::IntegrationRule::Arc] =
+          assess_trust(RecordingCosts(set.robot, set.recordings, options), set.robot, z);
+    }
+    const std::vector<RuleShift>& moved = by_rule[0].moved_by_rule;
+    EXPECT_EQ(moved.empty(), !off_nominal);
+    EXPECT_TRUE(by_rule[1].moved_by_rule.empty());
+    const std::string all = fmt::format("{}", fmt::join(by_rule[0].sentences, " "));
+    EXPECT_EQ(all.find("--integration=arc") != std::string::npos, off_nominal);
+    for (const RuleShift& m : moved)
+      for (std::size_t k = 0; k < by_rule[0].determined.size(); ++k)
+        if (by_rule[0].determined[k].number.name == m.name) {
+          const double refitted =
+              by_rule[1].determined[k].number.value - by_rule[0].determined[k].number.value;
+          EXPECT_NEAR(m.shift, refitted, 0.05 * std::abs(refitted)) << m.name;
+        }
   }
 }
 

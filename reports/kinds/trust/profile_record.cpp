@@ -147,7 +147,7 @@ void add_profile_figures(const Comparison& comparison, const std::string& prefix
   }
   const std::string id = prefix + "profile";
   const std::string caption =
-      "J above its minimum with one parameter held and all others fitted again (line, points: fits). Grey: "
+      "J above its minimum with one parameter held and all others fitted again (line, points: fits). Dashed: "
       "how far it may rise within the 95 % interval; a line that stays below it to a bound has no end there.";
   document.datasets[id] = csv;
   const std::vector<std::pair<std::string, std::string>> options = [&] {
@@ -157,7 +157,7 @@ void add_profile_figures(const Comparison& comparison, const std::string& prefix
   }();
   const vega::Choice choice{"parameter", "parameter", options, names.front()};
   const json x = vega::quantitative("value", "value [mm, deg, or the parameter's unit]");
-  json limit = vega::quantitative("limit", "");
+  json limit = vega::quantitative("limit", "J above its minimum");
   const json spec{
       {"width", 640},
       {"height", 280},
