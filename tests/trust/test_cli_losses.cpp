@@ -83,6 +83,20 @@ TEST(CliLosses, LeavesOutWhatDiffersFromItsSiblingsAndSaysSo) {
   EXPECT_THAT(judged.err, Not(HasSubstr("left out")));
 }
 
+// Per sample the rows of the stretches that count for less are those of the model's own form.
+TEST(CliLosses, GoWithRicherModels) {
+  const TemporaryFolder folder;
+  const std::string set = repeated_set(folder, true);
+  for (const char* loss : {"huber", "cauchy:recording"})
+    for (const char* model : {"time_offset", "lever_arm"}) {
+      const ProcessResult run = run_bench({"--data=" + set, "--solver=lm", "--accept=all", "--screen=off",
+                                           std::string("--loss=") + loss, std::string("--model=") + model,
+                                           "--validate=none", "--format=json", "--max-evals=20"});
+      ASSERT_EQ(run.exit_code, 0) << loss << " " << model << ": " << run.err;
+      EXPECT_NE(table(tables(run), "weighted_down"), nullptr) << loss << " " << model;
+    }
+}
+
 // Its path is drawn apart, with its name.
 TEST(CliLosses, PathsOfWhatWasLeftOutAreKeptAndDrawn) {
   const TemporaryFolder folder;
