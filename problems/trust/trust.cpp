@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "base/angle.hpp"
@@ -54,7 +55,9 @@ Setting prepare(const RecordingCosts& costs, const ConstVectorRef& z, Trust& tru
   return s;
 }
 
-std::vector<ParameterInterval> parameter_intervals(const Setting& s, const RecordingCovariances& covariances,
+// `units`: the recordings' scores, or those of kinds, with their covariances.
+std::vector<ParameterInterval> parameter_intervals(const Setting& s, const RecordingScores& units,
+                                                   const RecordingCovariances& covariances,
                                                    const std::vector<std::string>& active) {
   std::vector<ParameterInterval> list;
   for (Index k = 0; k < static_cast<Index>(s.scores.parameters.size()); ++k) {
@@ -62,7 +65,7 @@ std::vector<ParameterInterval> parameter_intervals(const Setting& s, const Recor
     const ParameterInfo& p = s.costs.parameters()[static_cast<std::size_t>(at)];
     ParameterInterval one{p.name, p.unit, s.z[at], (p.upper - p.lower) / 2, {}};
     const double scale = s.scores.scale[k];
-    one.interval = jackknife_interval(s.scores, covariances, Vector::Unit(s.scores.scale.size(), k));
+    one.interval = jackknife_interval(units, covariances, Vector::Unit(s.scores.scale.size(), k));
     Interval& found = one.interval;
     found.deviation *= scale;
     found.half_width *= scale;
@@ -195,8 +198,30 @@ Interval decided_by_the_box() {
   return none;
 }
 
+// What counts as one observation: kinds of drive where their errors repeat and there are enough of them.
+RecordingScores units_of(const RecordingScores& scores, Trust& trust) {
+  if (!trust.kind_test.possible || !trust.kind_test.systematic || trust.kinds < kManyKinds) return scores;
+  RecordingScores merged = merged_by_kind(scores);
+  if (RecordingCovariances(merged.g, merged.h).leverages().maxCoeff() > kLargestLeverage) return scores;
+  trust.between_kinds = true;
+  return merged;
+}
+
+// The interval of new kinds by what is known between kinds.
+void widen(const Interval& between, Interval& interval) {
+  if (between.refused != NoInterval::None) return;
+  interval.deviation = between.deviation;
+  interval.df = between.df;
+  interval.half_width = between.half_width;
+}
+
 std::string kind_sentence(const Trust& trust) {
   if (!trust.kind_test.possible || !trust.kind_test.systematic) return "";
+  if (trust.between_kinds)
+    return fmt::format(
+        "Errors repeat within each kind of drive (F = {:.3g}, p = {:.1g}): intervals for new kinds are taken "
+        "between kinds.",
+        trust.kind_test.f, trust.kind_test.p);
   return fmt::format(
       "Errors repeat within each kind of drive (F = {:.3g}, p = {:.1g}): what stands for the same drives "
       "says how "
@@ -259,10 +284,11 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
   const Interval general = general_refusal(s.scores);
   const RecordingCovariances covariances(s.scores.g, s.scores.h);
   trust.leverages = covariances.leverages();
-  trust.parameters = parameter_intervals(s, covariances, trust.active);
+  RecordingScores units = s.scores;
   for (TwistNumber& number : map.numbers) trust.determined.push_back({std::move(number), general});
   if (general.refused == NoInterval::None) {
     trust.kind_test = kind_test(s.scores.g, s.scores.h, s.scores.kinds);
+    units = units_of(s.scores, trust);
     if (trust.free == 0) {
       for (DeterminedNumber& d : trust.determined) d.interval = decided_by_the_box();
     } else {
@@ -270,17 +296,22 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
       if (options.exact_hessian)
         exact = exact_half_hessian([&](const Vector& at) { return half_gradient(costs, at); }, s.free, z);
       const LeaveOneOut moves(s.free, exact);
+      std::optional<LeaveOneOut> between;
+      if (trust.between_kinds) between.emplace(restricted(units, s.free_places), exact);
       trust.exact_hessian = moves.uses_exact();
       trust.hessian_eigenvalues = moves.eigenvalues();
       for (DeterminedNumber& d : trust.determined) {
         const Vector c = s.by_free(d.number.gradient);
         d.interval = c.isZero(0) ? decided_by_the_box() : moves.interval(c);
+        if (between && d.interval.refused == NoInterval::None) widen(between->interval(c), d.interval);
       }
       add_basic_drives(s, moves, trust);
       if (options.drives) add_kinds(s, moves, trust);
       if (options.rule) add_rule_shifts(s, robot, exact, trust);
     }
   }
+  trust.parameters = parameter_intervals(
+      s, units, trust.between_kinds ? RecordingCovariances(units.g, units.h) : covariances, trust.active);
   add_sentences(general, s.scores.cost(), trust);
   return trust;
 }

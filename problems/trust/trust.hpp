@@ -58,6 +58,9 @@ struct Trust {
   std::vector<RuleShift> moved_by_rule;
   double cost_by_arcs = std::numeric_limits<double>::quiet_NaN();
   KindTest kind_test;
+  // Errors repeat within each of at least twelve kinds, none of which decides a direction alone: intervals of
+  // new kinds are taken between kinds, those of the same drives between recordings.
+  bool between_kinds = false;
   Vector leverages;  // of every recording, in all parameters whose bounds differ
   // What has to be said below the tables, a sentence each; the last is kWhatIntervalsHold wherever there is
   // an interval.

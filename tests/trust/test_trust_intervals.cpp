@@ -439,5 +439,35 @@ TEST(Trust, SaysWhatTheRuleOfIntegrationMoves) {
   }
 }
 
+// Gains that differ from kind to kind and repeat within: a kind is an observation then.
+TEST(Trust, TakesKindsAsObservationsWhereTheirErrorsRepeat) {
+  simulate::RecordingScenario scenario = load_recording_scenario("rich");
+  Trust trust[2];
+  for (const bool gains : {false, true}) {
+    if (gains) {
+      double sign = 1;
+      for (const simulate::Drive& drive : scenario.drives) {
+        scenario.slip.gains[drive.name] = {1 + 2e-3 * sign, 1 - 3e-3 * sign};
+        sign = -0.7 * sign + 0.2;
+      }
+    }
+    const Dataset set = simulate::simulate_set(scenario, 1001).dataset;
+    const CalibrationOptions options;
+    const Problem problem(CalibrationProblem(set.robot, set.recordings, options));
+    const Vector z = solve(problem, {"lm", {}}, problem.start(), {}).x;
+    trust[gains] = assess_trust(RecordingCosts(set.robot, set.recordings, options), set.robot, z);
+  }
+  ASSERT_GE(trust[1].kinds, 12U);
+  EXPECT_FALSE(trust[0].between_kinds);
+  EXPECT_TRUE(trust[1].between_kinds) << trust[1].kind_test.p;
+  double wider = 0;
+  for (std::size_t k = 0; k < trust[1].determined.size(); ++k) {
+    const Interval& i = trust[1].determined[k].interval;
+    EXPECT_LE(i.df, static_cast<double>(trust[1].kinds)) << trust[1].determined[k].number.name;
+    if (i.half_width > 2 * i.same_half_width) ++wider;
+  }
+  EXPECT_GE(wider, 3) << "what repeats is in the one and not in the other";
+}
+
 }  // namespace
 }  // namespace odobench
