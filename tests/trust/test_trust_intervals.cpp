@@ -457,14 +457,13 @@ TEST(Trust, TakesKindsAsObservationsWhereTheirErrorsRepeat) {
     const Vector z = solve(problem, {"lm", {}}, problem.start(), {}).x;
     trust[gains] = assess_trust(RecordingCosts(set.robot, set.recordings, options), set.robot, z);
   }
-  ASSERT_GE(trust[1].kinds, 12U);
   EXPECT_FALSE(trust[0].between_kinds);
   EXPECT_TRUE(trust[1].between_kinds) << trust[1].kind_test.p;
-  double wider = 0;
+  int wider = 0;
   for (std::size_t k = 0; k < trust[1].determined.size(); ++k) {
     const Interval& i = trust[1].determined[k].interval;
     EXPECT_LE(i.df, static_cast<double>(trust[1].kinds)) << trust[1].determined[k].number.name;
-    if (i.half_width > 2 * i.same_half_width) ++wider;
+    wider += i.half_width > 2 * i.same_half_width ? 1 : 0;
   }
   EXPECT_GE(wider, 3) << "what repeats is in the one and not in the other";
 }
