@@ -11,5 +11,7 @@ namespace odobench {
 void add_validation(CLI::App& app, ValidationChoice& choice);
 // --bootstrap, --bootstrap-scheme.
 void add_bootstrap(CLI::App& app, TrustChoice& choice);
+// --profile, --profile-steps, --combination.
+void add_profile(CLI::App& app, TrustChoice& choice);
 
 }  // namespace odobench

@@ -18,12 +18,15 @@ TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loade
   set.problem = problem;
   set.dataset = loaded.dataset_name();
   set.dataset_sha256 = loaded.dataset_sha256;
-  for (const Recording& r : loaded.calibration->recordings()) {
-    set.recordings.push_back({r.id, r.trajectory, r.repetition, set.time_s.size(), r.size()});
+  const auto add = [&](const Recording& r, bool left_out) {
+    set.recordings.push_back({r.id, r.trajectory, r.repetition, set.time_s.size(), r.size(), left_out});
     for (const std::int64_t time : r.time_us) set.time_s.push_back(static_cast<double>(time) * 1e-6);
     const Reference reference = with_reference_everywhere(r).reference;
     append_track({reference.x, reference.y, reference.theta}, set.reference);
-  }
+  };
+  for (const Recording& r : loaded.calibration->recordings()) add(r, false);
+  if (loaded.aside)
+    for (const Recording& r : loaded.aside->recordings()) add(r, true);
   return set;
 }
 
@@ -38,8 +41,11 @@ TrackSet run_tracks(const LoadedProblem& loaded, const std::vector<RunRecord>& r
       for (std::size_t i = 0; i < shown.parameters.size(); ++i)
         z[static_cast<Eigen::Index>(i)] = shown.parameters[i].value;
       StoredTrack track{row.label, shown.repetition, {}};
-      for (std::size_t i = 0; i < set.recordings.size(); ++i)
+      for (std::size_t i = 0; i < loaded.calibration->recordings().size(); ++i)
         append_track(loaded.calibration->integrate(i, z), track.pose);
+      if (loaded.aside)
+        for (std::size_t i = 0; i < loaded.aside->recordings().size(); ++i)
+          append_track(loaded.aside->integrate(i, z), track.pose);
       set.tracks.push_back(std::move(track));
     }
   }

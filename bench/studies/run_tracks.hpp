@@ -9,7 +9,7 @@
 
 namespace odobench {
 
-// Recordings, times and reference; no tracks yet.
+// Recordings, those last that were left out, times and reference; no tracks yet.
 TrackSet reference_tracks(const std::string& problem, const LoadedProblem& loaded);
 
 void append_track(const PoseTrack& track, PoseTrack& all);

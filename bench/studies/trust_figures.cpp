@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.hpp"
+#include "problems/trust/combined_intervals.hpp"
 #include "problems/trust/trust.hpp"
 
 namespace odobench {
@@ -55,11 +57,31 @@ void describe_trust(const LoadedProblem& loaded, const Vector& x, RunRecord& rec
   };
   try {
     record.trust = trust_record(assess_trust(*loaded.apart->get(), loaded.apart->robot(), x));
+    for (Measure& measure : trust_measures(*record.trust)) record.measures.put(std::move(measure));
+    double free = 0, on_bounds = 0;
+    for (const ParameterValue& p : record.parameters) {
+      if (p.lower < p.upper) ++free;
+      if (p.lower < p.upper && !p.at_bound.empty()) ++on_bounds;
+    }
+    if (free > 0) record.measures.put({"trust.share_on_bounds", on_bounds / free, "", Better::Lower});
   } catch (const DataError& error) {
     give_up(error);
   } catch (const std::invalid_argument& error) {
     give_up(error);
   }
+}
+
+void describe_combinations(const LoadedProblem& loaded, const std::vector<Formula>& formulas,
+                           RunRecord& record) {
+  if (!loaded.apart || !record.trust) return;
+  Vector z(static_cast<Eigen::Index>(record.parameters.size()));
+  for (std::size_t i = 0; i < record.parameters.size(); ++i)
+    z[static_cast<Eigen::Index>(i)] = record.parameters[i].value;
+  record.trust->combinations.clear();
+  for (const CombinationInterval& c :
+       combination_intervals(*loaded.apart->get(), loaded.apart->robot(), z, formulas))
+    record.trust->combinations.push_back({c.formula.name, c.formula.text, c.unit, c.nominal, c.value,
+                                          c.of_the_map, interval_record(c.interval)});
 }
 
 }  // namespace odobench

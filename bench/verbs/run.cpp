@@ -27,6 +27,7 @@ constexpr const char* kRunExamples = R"(Examples:
   bench --solver=lm,ip --start=random --repeat=20
   bench --solver=lm --data=diff.json --cost=segments --classical --start=censi
   bench --solver=lm --data=set.json --validate=kfold:5 --bootstrap=500 --out=results
+  bench --solver=lm --data=set.json --profile=r1,b3 --combination="left wheels=(r1+r2)/2"
   bench --config=experiment.json --threads=1
 A configuration file holds these options without dashes: {"solver": ["lm", "pso[swarm=60]"], "repeat": 10}
 Every method also ends by itself; 'bench list solvers' shows its options.)";
@@ -89,6 +90,7 @@ void add_options(CLI::App& app, RunOptions& options) {
       ->type_name("SOLVER");
   add_validation(app, options.trust.validation);
   add_bootstrap(app, options.trust);
+  add_profile(app, options.trust);
   add_run_folder(app, options.out, options.overwrite);
   app.add_flag(
       "--resume", options.study.resume,

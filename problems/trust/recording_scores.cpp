@@ -49,6 +49,38 @@ RecordingScores restricted(const RecordingScores& scores, const std::vector<Inde
   return fewer;
 }
 
+RecordingScores merged_by_kind(const RecordingScores& scores) {
+  const KindsOfDrives kinds = kinds_of(scores.kinds);
+  RecordingScores merged = scores;
+  merged.recordings = merged.kinds = kinds.names;
+  merged.g.assign(kinds.names.size(), Vector::Zero(scores.scale.size()));
+  merged.h.assign(kinds.names.size(), Matrix::Zero(scores.scale.size(), scores.scale.size()));
+  merged.costs = Vector::Zero(static_cast<Index>(kinds.names.size()));
+  for (std::size_t n = 0; n < scores.size(); ++n) {
+    merged.g[kinds.of[n]] += scores.g[n];
+    merged.h[kinds.of[n]] += scores.h[n];
+    merged.costs[static_cast<Index>(kinds.of[n])] += scores.costs[static_cast<Index>(n)];
+  }
+  return merged;
+}
+
+bool on_bound(const ParameterInfo& parameter, double value) {
+  constexpr double kAtBound = 1e-6;  // of the width of a box
+  const double near = kAtBound * (parameter.upper - parameter.lower);
+  return parameter.lower < parameter.upper &&
+         (value <= parameter.lower + near || value >= parameter.upper - near);
+}
+
+Vector half_gradient(const RecordingCosts& costs, const Vector& z) {
+  Vector sum = Vector::Zero(z.size());
+  NormalEquations e;
+  for (std::size_t n = 0; n < costs.size(); ++n) {
+    costs[n].normal_equations(z, e);
+    sum += e.jtr;
+  }
+  return sum;
+}
+
 KindsOfDrives kinds_of(const std::vector<std::string>& kinds) {
   KindsOfDrives all;
   for (const std::string& kind : kinds) {

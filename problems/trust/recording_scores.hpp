@@ -30,6 +30,17 @@ RecordingScores recording_scores(const RecordingCosts& costs, const ConstVectorR
 // The same of fewer parameters: `places` among scores.parameters.
 RecordingScores restricted(const RecordingScores& scores, const std::vector<Eigen::Index>& places);
 
+// Kinds of drives as the units of information: g_n, h_n and J_n of a kind summed, its name as that of the
+// recording.
+RecordingScores merged_by_kind(const RecordingScores& scores);
+
+// Whether a parameter lies within 1e-6 of the width of its box of an end of it; never where the bounds are
+// alike.
+bool on_bound(const ParameterInfo& parameter, double value);
+
+// Half the gradient of J = sum J_n by all parameters, in their units.
+Vector half_gradient(const RecordingCosts& costs, const Vector& z);
+
 // Different kinds in order of first appearance, and the kind of each recording as its place among them.
 struct KindsOfDrives {
   std::vector<std::string> names;

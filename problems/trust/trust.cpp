@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "base/angle.hpp"
@@ -17,15 +19,10 @@ using Eigen::Index;
 
 namespace {
 
-constexpr double kAtBound = 1e-6;       // of the width of a box
 constexpr double kStraight = 10;        // m
+constexpr double kNoticed = 0.5;        // of a half width
 constexpr double kPoseStep = 1e-6;      // relative
 constexpr std::size_t kManyKinds = 12;  // from which intervals may be taken between kinds
-
-bool on_bound(const ParameterInfo& p, double value) {
-  const double near = kAtBound * (p.upper - p.lower);
-  return p.lower < p.upper && (value <= p.lower + near || value >= p.upper - near);
-}
 
 // Everything that several parts of the result are made of.
 struct Setting {
@@ -40,16 +37,6 @@ struct Setting {
     return free.scale.cwiseProduct(Vector(gradient(free.parameters)));
   }
 };
-
-Vector half_gradient(const RecordingCosts& costs, const Vector& z) {
-  Vector sum = Vector::Zero(z.size());
-  NormalEquations e;
-  for (std::size_t n = 0; n < costs.size(); ++n) {
-    costs[n].normal_equations(z, e);
-    sum += e.jtr;
-  }
-  return sum;
-}
 
 Setting prepare(const RecordingCosts& costs, const ConstVectorRef& z, Trust& trust) {
   Setting s{costs, z, recording_scores(costs, z), {}, {}};
@@ -68,7 +55,9 @@ Setting prepare(const RecordingCosts& costs, const ConstVectorRef& z, Trust& tru
   return s;
 }
 
-std::vector<ParameterInterval> parameter_intervals(const Setting& s, const RecordingCovariances& covariances,
+// `units`: the recordings' scores, or those of kinds, with their covariances.
+std::vector<ParameterInterval> parameter_intervals(const Setting& s, const RecordingScores& units,
+                                                   const RecordingCovariances& covariances,
                                                    const std::vector<std::string>& active) {
   std::vector<ParameterInterval> list;
   for (Index k = 0; k < static_cast<Index>(s.scores.parameters.size()); ++k) {
@@ -76,7 +65,7 @@ std::vector<ParameterInterval> parameter_intervals(const Setting& s, const Recor
     const ParameterInfo& p = s.costs.parameters()[static_cast<std::size_t>(at)];
     ParameterInterval one{p.name, p.unit, s.z[at], (p.upper - p.lower) / 2, {}};
     const double scale = s.scores.scale[k];
-    one.interval = jackknife_interval(s.scores, covariances, Vector::Unit(s.scores.scale.size(), k));
+    one.interval = jackknife_interval(units, covariances, Vector::Unit(s.scores.scale.size(), k));
     Interval& found = one.interval;
     found.deviation *= scale;
     found.half_width *= scale;
@@ -175,6 +164,33 @@ void add_kinds(const Setting& s, const LeaveOneOut& moves, Trust& trust) {
   }
 }
 
+// The first Newton step of the free parameters towards the optimum of the same J by arcs, where J is lower
+// there: where it is not, the drives speak for Euler's rule (as simulated ones that were made by it do).
+void add_rule_shifts(const Setting& s, const Robot& robot, const Matrix& exact, Trust& trust) {
+  CalibrationOptions options = s.costs[0].options();
+  if (options.rule != robots::IntegrationRule::Euler || options.cost != CostKind::EverySample) return;
+  options.rule = robots::IntegrationRule::Arc;
+  Vector gradient = Vector::Zero(s.z.size());
+  NormalEquations e;
+  double cost = 0;
+  for (std::size_t n = 0; n < s.costs.size(); ++n) {
+    CalibrationProblem(robot, {s.costs.recording(n)}, options).normal_equations(s.z, e);
+    gradient += e.jtr;
+    cost += e.cost;
+  }
+  const Vector slope = s.by_free(gradient);
+  const Matrix curvature = trust.exact_hessian ? exact : s.free.information();
+  const Vector moved = -curvature.ldlt().solve(slope);
+  trust.cost_by_arcs = cost + slope.dot(moved);
+  if (!(trust.cost_by_arcs < s.scores.cost())) return;
+  for (const DeterminedNumber& d : trust.determined) {
+    if (d.interval.refused != NoInterval::None) continue;
+    const double shift = s.by_free(d.number.gradient).dot(moved);
+    if (std::abs(shift) > kNoticed * d.interval.half_width)
+      trust.moved_by_rule.push_back({d.number.name, d.number.words, shift, d.interval.half_width});
+  }
+}
+
 Interval decided_by_the_box() {
   Interval none;
   none.refused = NoInterval::BoundActive;
@@ -182,8 +198,30 @@ Interval decided_by_the_box() {
   return none;
 }
 
+// What counts as one observation: kinds of drive where their errors repeat and there are enough of them.
+RecordingScores units_of(const RecordingScores& scores, Trust& trust) {
+  if (!trust.kind_test.possible || !trust.kind_test.systematic || trust.kinds < kManyKinds) return scores;
+  RecordingScores merged = merged_by_kind(scores);
+  if (RecordingCovariances(merged.g, merged.h).leverages().maxCoeff() > kLargestLeverage) return scores;
+  trust.between_kinds = true;
+  return merged;
+}
+
+// The interval of new kinds by what is known between kinds.
+void widen(const Interval& between, Interval& interval) {
+  if (between.refused != NoInterval::None) return;
+  interval.deviation = between.deviation;
+  interval.df = between.df;
+  interval.half_width = between.half_width;
+}
+
 std::string kind_sentence(const Trust& trust) {
   if (!trust.kind_test.possible || !trust.kind_test.systematic) return "";
+  if (trust.between_kinds)
+    return fmt::format(
+        "Errors repeat within each kind of drive (F = {:.3g}, p = {:.1g}): intervals for new kinds are taken "
+        "between kinds.",
+        trust.kind_test.f, trust.kind_test.p);
   return fmt::format(
       "Errors repeat within each kind of drive (F = {:.3g}, p = {:.1g}): what stands for the same drives "
       "says how "
@@ -192,7 +230,7 @@ std::string kind_sentence(const Trust& trust) {
       trust.kinds < kManyKinds ? "; more kinds of drive would tell" : "");
 }
 
-void add_sentences(const Interval& general, Trust& trust) {
+void add_sentences(const Interval& general, double cost, Trust& trust) {
   std::vector<std::string>& all = trust.sentences;
   if (general.refused != NoInterval::None) {
     all.push_back("No intervals: " + general.reason + ".");
@@ -215,6 +253,16 @@ void add_sentences(const Interval& general, Trust& trust) {
     all.push_back(fmt::format("{}: decided by {} bounds, not by the drives.", fmt::join(wide, ", "),
                               wide.size() == 1 ? "its" : "their"));
   if (const std::string kinds = kind_sentence(trust); !kinds.empty()) all.push_back(kinds);
+  if (!trust.moved_by_rule.empty()) {
+    std::vector<std::string> shifts;
+    for (const RuleShift& r : trust.moved_by_rule)
+      shifts.push_back(fmt::format("{} by {:.2g} of its +-", r.words, std::abs(r.shift) / r.half_width));
+    all.push_back(
+        fmt::format("Euler's rule of integration moves all recordings alike, which no interval holds: {}; by "
+                    "arcs J would "
+                    "be {:.3g} % lower (--integration=arc).",
+                    fmt::join(shifts, ", "), 100 * (1 - trust.cost_by_arcs / cost)));
+  }
   if (trust.kinds == trust.recordings)
     all.emplace_back("No drive was repeated: the intervals cannot separate noise from errors of the model.");
   all.emplace_back(kWhatIntervalsHold);
@@ -236,13 +284,14 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
   const Interval general = general_refusal(s.scores);
   const RecordingCovariances covariances(s.scores.g, s.scores.h);
   trust.leverages = covariances.leverages();
-  trust.parameters = parameter_intervals(s, covariances, trust.active);
+  RecordingScores units = s.scores;
   trust.ratios_only = costs[0].options().position_weight == 0;
   for (TwistNumber& number : map.numbers)
     if (!trust.ratios_only || number.entry == TwistEntry::Turn || number.entry == TwistEntry::Swing)
       trust.determined.push_back({std::move(number), general});
   if (general.refused == NoInterval::None) {
     trust.kind_test = kind_test(s.scores.g, s.scores.h, s.scores.kinds);
+    units = units_of(s.scores, trust);
     if (trust.free == 0) {
       for (DeterminedNumber& d : trust.determined) d.interval = decided_by_the_box();
     } else {
@@ -250,18 +299,24 @@ Trust assess_trust(const RecordingCosts& costs, const Robot& robot, const ConstV
       if (options.exact_hessian)
         exact = exact_half_hessian([&](const Vector& at) { return half_gradient(costs, at); }, s.free, z);
       const LeaveOneOut moves(s.free, exact);
+      std::optional<LeaveOneOut> between;
+      if (trust.between_kinds) between.emplace(restricted(units, s.free_places), exact);
       trust.exact_hessian = moves.uses_exact();
       trust.hessian_eigenvalues = moves.eigenvalues();
       for (DeterminedNumber& d : trust.determined) {
         const Vector c = s.by_free(d.number.gradient);
         d.interval = c.isZero(0) ? decided_by_the_box() : moves.interval(c);
+        if (between && d.interval.refused == NoInterval::None) widen(between->interval(c), d.interval);
       }
       add_basic_drives(s, moves, trust);
       if (options.drives) add_kinds(s, moves, trust);
       if (trust.ratios_only) std::erase_if(trust.drives, [](const DriveError& d) { return d.unit == "m"; });
+      if (options.rule) add_rule_shifts(s, robot, exact, trust);
     }
   }
-  add_sentences(general, trust);
+  trust.parameters = parameter_intervals(
+      s, units, trust.between_kinds ? RecordingCovariances(units.g, units.h) : covariances, trust.active);
+  add_sentences(general, s.scores.cost(), trust);
   return trust;
 }
 

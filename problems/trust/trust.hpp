@@ -2,6 +2,7 @@
 // decides. docs/uncertainty.md explains the figures; intervals.hpp and covariances.hpp have the equations.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct DriveError {
   Interval interval;
 };
 
+// What a number of the map would move by with arcs instead of explicit Euler steps, to first order: an error
+// that all recordings share, which no interval holds. Euler's path lags behind half of every step's turn.
+struct RuleShift {
+  std::string name, words;
+  double shift = 0, half_width = 0;  // in the number's unit
+};
+
 struct Trust {
   std::size_t recordings = 0, kinds = 0;  // G, K
   std::vector<std::string> active;        // parameters on a bound, "a1"
@@ -48,7 +56,14 @@ struct Trust {
   std::vector<std::string> map_remarks;
   std::vector<ParameterInterval> parameters;  // all whose bounds differ
   std::vector<DriveError> drives;
+  // Beyond half of their intervals, where J is lower by arcs; and that J, to first order (not-a-number where
+  // nobody looked).
+  std::vector<RuleShift> moved_by_rule;
+  double cost_by_arcs = std::numeric_limits<double>::quiet_NaN();
   KindTest kind_test;
+  // Errors repeat within each of at least twelve kinds, none of which decides a direction alone: intervals of
+  // new kinds are taken between kinds, those of the same drives between recordings.
+  bool between_kinds = false;
   Vector leverages;  // of every recording, in all parameters whose bounds differ
   // What has to be said below the tables, a sentence each; the last is kWhatIntervalsHold wherever there is
   // an interval.
@@ -61,6 +76,7 @@ inline constexpr const char* kWhatIntervalsHold =
 struct TrustOptions {
   bool exact_hessian = true;
   bool drives = true;  // DriveErrors of the kinds of the set, which integrate recordings
+  bool rule = true;    // RuleShifts where recordings are integrated by Euler's rule
 };
 
 // A parameter counts as on a bound within 1e-6 of the width of its box. z: all parameters, in their units.

@@ -37,7 +37,7 @@ std::vector<double> row_weights(const Loss& loss, const ConstVectorRef& e, Index
 
 // Samples of the row before and of row i (of pieces: where they begin and end).
 std::size_t sample_of(const CalibrationProblem& problem, std::size_t recording, std::size_t row) {
-  return problem.structured() ? row : problem.general()->rows(recording)[row];
+  return problem.structured() ? row : problem.rows(recording)[row];
 }
 
 std::vector<WeightedDown> stretches(const CalibrationProblem& problem, std::size_t n, double ratio,

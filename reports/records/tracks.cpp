@@ -109,7 +109,9 @@ TrackSet read_index(const JsonNode& root, const fs::path& folder) {
     const std::int64_t samples = item.at("samples").integer();
     if (samples < 1 || samples > 1'000'000'000) item.at("samples").fail("a number of samples");
     set.recordings.push_back({item.at("id").text(), item.at("trajectory").text(),
-                              item.at("repetition").small_integer(), n, static_cast<std::size_t>(samples)});
+                              item.at("repetition").small_integer(), n, static_cast<std::size_t>(samples),
+                              false});
+    if (const auto left_out = item.find("left_out")) set.recordings.back().left_out = left_out->boolean();
     n += static_cast<std::size_t>(samples);
   }
   set.time_s = read_npy(file_in(folder, root.at("time")), fmt::format("{},", n), n);
@@ -134,6 +136,7 @@ std::vector<std::pair<fs::path, std::string>> track_files(const TrackSet& set) {
     samples += r.samples;
     index["recordings"].push_back(
         {{"id", r.id}, {"trajectory", r.trajectory}, {"repetition", r.repetition}, {"samples", r.samples}});
+    if (r.left_out) index["recordings"].back()["left_out"] = true;
   }
   if (samples != n)
     throw std::invalid_argument(

@@ -3,7 +3,8 @@
 //
 // A folder `tracks` with arrays in NumPy's format 1.0 (.npy; float64, little-endian, C order) and an index:
 //   tracks.json     {"schema_version": 1, "problem", "dataset", "dataset_sha256",
-//                    "recordings": [{"id", "trajectory", "repetition", "samples"}, ..],
+//                    "recordings": [{"id", "trajectory", "repetition", "samples", "left_out"}, ..],
+//                                  left_out where it is true,
 //                    "time": "time.npy", "reference": "reference.npy",
 //                    "tracks": [{"label", "repetition", "file"}, ..]}
 //   time.npy        (N): s, from 0 in every recording; N samples of all recordings, one recording after the
@@ -29,6 +30,7 @@ struct TrackRecording {
   std::string id, trajectory;
   int repetition = 0;
   std::size_t begin = 0, samples = 0;  // place in the arrays
+  bool left_out = false;               // of the calibration, since it differs from its siblings
 };
 
 struct StoredTrack {

@@ -1,5 +1,6 @@
 #include "reports/records/trust_record.hpp"
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -128,6 +129,26 @@ IntervalRecord::IntervalRecord()
 
 TrustRecord::TrustRecord() : kind_f(kNotGiven), kind_p(kNotGiven) {}
 
+std::vector<Measure> trust_measures(const TrustRecord& trust) {
+  std::vector<Measure> list;
+  double told = 0, single = 0;
+  for (const DeterminedRecord& d : trust.determined) {
+    const std::string name = "trust." + d.name;
+    list.push_back({name, d.value, d.unit, Better::None, d.name});
+    if (std::isfinite(d.interval.half_width)) {
+      list.push_back({name + ".half_width", d.interval.half_width, d.unit, Better::Lower, d.name});
+      ++told;
+    }
+    if (std::isfinite(d.interval.same_half_width))
+      list.push_back({name + ".same_half_width", d.interval.same_half_width, d.unit, Better::Lower, d.name});
+  }
+  for (const ParameterIntervalRecord& p : trust.parameters)
+    if (std::isfinite(p.interval.half_width)) ++single;
+  list.push_back({"trust.intervals", told, "", Better::Higher});
+  list.push_back({"trust.single_intervals", single, "", Better::Higher});
+  return list;
+}
+
 json to_json(const TrustRecord& trust) {
   json out{{"recordings", trust.recordings},
            {"kinds", trust.kinds},
@@ -158,6 +179,14 @@ json to_json(const TrustRecord& trust) {
   if (trust.twice_box) out["twice_box"] = finite_or_null(*trust.twice_box);
   for (const ExplanationRecord& e : trust.explanations) out["explanations"].push_back(explanation_json(e));
   if (trust.next) out["next"] = next_json(*trust.next);
+  for (const CombinationRecord& c : trust.combinations)
+    out["combinations"].push_back(with_interval({{"name", c.name},
+                                                 {"formula", c.formula},
+                                                 {"unit", c.unit},
+                                                 {"nominal", finite_or_null(c.nominal)},
+                                                 {"value", finite_or_null(c.value)},
+                                                 {"of_the_map", c.of_the_map}},
+                                                c.interval));
   return out;
 }
 
@@ -184,6 +213,11 @@ TrustRecord trust_from(const JsonNode& node) {
   if (const auto list = node.find("explanations"))
     for (const JsonNode& e : list->elements()) trust.explanations.push_back(explanation_from(e));
   if (const auto next = node.find("next")) trust.next = next_from(*next);
+  if (const auto combinations = node.find("combinations"))
+    for (const JsonNode& c : combinations->elements())
+      trust.combinations.push_back({c.at("name").text(), c.at("formula").text(), c.at("unit").text(),
+                                    c.at("nominal").stored_number(), c.at("value").stored_number(),
+                                    c.at("of_the_map").boolean(), interval_from(c)});
   trust.remarks = texts_from(node.at("remarks"));
   trust.sentences = texts_from(node.at("sentences"));
   return trust;

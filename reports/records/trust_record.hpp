@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/records/measure.hpp"
+
 namespace odobench {
 
 class JsonNode;
@@ -73,6 +75,14 @@ struct NextStepsRecord {
   std::vector<NextDriveRecord> drives;  // to decide: best first, each does alone; to settle: together
 };
 
+// A number that somebody asked for: --combination.
+struct CombinationRecord {
+  std::string name, formula, unit;
+  double nominal = 0, value = 0;  // nominal: not-a-number where the formula has none there
+  bool of_the_map = false;        // made of the determined numbers alone
+  IntervalRecord interval;
+};
+
 struct TrustRecord {
   int recordings = 0, kinds = 0;
   bool exact_hessian = false;
@@ -85,10 +95,19 @@ struct TrustRecord {
   std::optional<double> twice_box;  // J in a box twice as wide, where a parameter is on a bound
   std::vector<ExplanationRecord> explanations;
   std::optional<NextStepsRecord> next;
+  std::vector<CombinationRecord> combinations;
   std::vector<std::string> remarks, sentences;  // of the numbers; below the tables
 
   TrustRecord();
 };
+
+// What comparisons and gates watch of it, `of` the number NAME of the map:
+//   trust.NAME                                   value in SI units; no direction
+//   trust.NAME.half_width, .same_half_width      95 %, new kinds of drive and the same; lower is better;
+//                                                absent where there is no interval
+//   trust.intervals                              numbers of the map that have one; higher is better
+//   trust.single_intervals                       parameters that have one; higher is better
+std::vector<Measure> trust_measures(const TrustRecord& trust);
 
 nlohmann::json to_json(const TrustRecord& trust);
 // DataError names the field. Fields that it does not know are ignored.

@@ -211,15 +211,14 @@ void damage_table(const std::vector<Outcome>& outcomes) {
         fmt::print("  neither: {}, {}: z {:.2g}, alone {:+.2f} %\n", d.id, d.damage.text, d.z, d.alone);
 }
 
-void random_tables(const CalibrationProblem& clean, int sets) {
+void random_tables(const CalibrationProblem& clean, int sets, std::size_t every) {
   const Vector best = solved(clean, {});
   const Judge judge{clean, total(clean, best, false), clean.cost(best)};
   const std::array<const char*, 5> kinds{"slip", "swap", "outlier", "pose", "mix"};
   const auto each = static_cast<std::size_t>(sets);
   std::vector<Outcome> outcomes(kinds.size() * each);
-  // The loss per sample on every fifth set.
   parallel_for(outcomes.size(), 0, [&](std::size_t i) {
-    outcomes[i] = judge.of(kinds[i / each], static_cast<int>(i % each), i % 5 == 0);
+    outcomes[i] = judge.of(kinds[i / each], static_cast<int>(i % each), i % every == 0);
     fmt::print(stderr, "{} ", i);
   });
   fmt::print(
@@ -238,13 +237,14 @@ void random_tables(const CalibrationProblem& clean, int sets) {
 
 }  // namespace
 
-int robust_power(int sets) {
+// The loss per sample on one set of `every`: it takes longer than all others.
+int robust_power(int sets, std::size_t every) {
   if (!testing::has_shared()) {
     fmt::print(stderr, "robust_power: needs {} (set ODOBENCH_SHARED)\n", testing::shared_folder().string());
     return 2;
   }
   const CalibrationProblem clean(vitko_dataset().robot, vitko_dataset().recordings, thesis());
-  if (sets > 0) random_tables(clean, sets);
+  if (sets > 0) random_tables(clean, sets, every);
   fixed_table(clean);
   return 0;
 }
@@ -252,5 +252,6 @@ int robust_power(int sets) {
 }  // namespace odobench
 
 int main(int argc, char** argv) {
-  return odobench::robust_power(argc > 1 ? std::atoi(argv[1]) : 20);
+  return odobench::robust_power(argc > 1 ? std::atoi(argv[1]) : 20,
+                                static_cast<std::size_t>(argc > 2 ? std::max(1, std::atoi(argv[2])) : 5));
 }

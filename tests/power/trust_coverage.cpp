@@ -1,7 +1,7 @@
 // Whether 95 % intervals hold the truth in 95 % of the cases: simulated sets of known truth, calibrated and
 // judged. Prints the table of docs/uncertainty.md; scripts/coverage_figure.py draws its figure from it.
 //
-// usage: trust_coverage [SETS [FIRST_SEED]]      sets of each kind, 200, from seed 1001
+// usage: trust_coverage [SETS [FIRST_SEED [KIND]]]      sets of each kind, 200, from seed 1001; KIND alone
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -28,6 +28,12 @@ using testing::Held;
 using testing::SetCoverage;
 using Make = std::function<Dataset(std::uint64_t seed, int repetitions)>;
 
+struct Kind {
+  std::string name;
+  Make make;
+  CalibrationChoice choice = {};
+};
+
 Make of_scenario(const std::string& name, const std::function<void(simulate::RecordingScenario&)>& change) {
   simulate::RecordingScenario scenario = load_recording_scenario(name);
   change(scenario);
@@ -50,7 +56,7 @@ Make of_robot(const std::string& kinematics, const std::string& file) {
 struct Totals {
   std::map<std::string, Held> determined, same_drives;
   Held parameters, end_errors;
-  double on_bounds = 0, systematic = 0;
+  double on_bounds = 0, systematic = 0, rule_said = 0;
 };
 
 void add(const SetCoverage& one, Totals& all) {
@@ -60,6 +66,7 @@ void add(const SetCoverage& one, Totals& all) {
   all.end_errors += one.end_errors;
   all.on_bounds += one.on_bounds;
   all.systematic += one.systematic ? 1 : 0;
+  all.rule_said += one.rule_said ? 1 : 0;
 }
 
 void say(const std::string& set, const std::string& what, const Held& held) {
@@ -78,35 +85,43 @@ void print(const std::string& set, int sets, const Totals& all) {
   say(set, "end_errors", all.end_errors);
   fmt::print("{},on_bounds,{:.2f},{},\n{},systematic_percent,{:.1f},{},\n", set, all.on_bounds / sets, sets,
              set, 100 * all.systematic / sets, sets);
+  fmt::print("{},rule_said_percent,{:.1f},{},\n", set, 100 * all.rule_said / sets, sets);
   std::fflush(stdout);
 }
 
-int run(int sets, std::uint64_t first) {
+int run(int sets, std::uint64_t first, const std::string& only) {
   const testing::TemporaryFolder folder;
   const auto nothing = [](simulate::RecordingScenario&) {};
   const auto slip = [](simulate::RecordingScenario& s) {
     s.slip.fixed = 1e-3;
     s.slip.yaw_bias = 5e-5;
   };
-  const std::vector<std::pair<std::string, Make>> kinds = {
+  CalibrationChoice arc, anchored;
+  arc.rule = anchored.rule = robots::IntegrationRule::Arc;
+  anchored.model = std::vector<std::string>{"anchor"};
+  const std::vector<Kind> kinds = {
       {"rich", of_scenario("rich", nothing)},
       {"rich_slip", of_scenario("rich", slip)},
       {"off_nominal", of_scenario("off_nominal", nothing)},
+      {"off_nominal_arc", of_scenario("off_nominal", nothing), arc},
+      {"off_nominal_arc_anchor", of_scenario("off_nominal", nothing), anchored},
+      {"rich_arc_anchor", of_scenario("rich", nothing), anchored},
       {"differential", of_robot("differential", (folder / "differential.json").string())},
       {"mecanum", of_robot("mecanum", (folder / "mecanum.json").string())}};
   fmt::print("set,what,percent,intervals,refused\n");
-  for (const auto& [name, make] : kinds) {
+  for (const Kind& kind : kinds) {
+    if (!only.empty() && only != kind.name) continue;
     std::vector<SetCoverage> each(static_cast<std::size_t>(sets));
     parallel_for(
         each.size(), 0,
         [&](std::size_t i) {
           const std::uint64_t seed = first + i;
-          each[i] = testing::coverage_of(make(seed, 0), make(seed + 1'000'000, 1));
+          each[i] = testing::coverage_of(kind.make(seed, 0), kind.make(seed + 1'000'000, 1), kind.choice);
         },
         Stop());
     Totals all;
     for (const SetCoverage& one : each) add(one, all);
-    print(name, sets, all);
+    print(kind.name, sets, all);
   }
   return 0;
 }
@@ -117,5 +132,5 @@ int run(int sets, std::uint64_t first) {
 int main(int argc, char** argv) {
   const int sets = argc > 1 ? std::atoi(argv[1]) : 200;
   const std::uint64_t first = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1001;
-  return odobench::run(sets > 0 ? sets : 200, first);
+  return odobench::run(sets > 0 ? sets : 200, first, argc > 3 ? argv[3] : "");
 }

@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "base/files.hpp"
 #include "datasets/dataset.hpp"
 #include "problems/simulation/robot_demo.hpp"
+#include "reports/records/tracks.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace odobench {
@@ -78,6 +81,37 @@ TEST(CliLosses, LeavesOutWhatDiffersFromItsSiblingsAndSaysSo) {
   ASSERT_EQ(judged.exit_code, 0) << judged.err;
   EXPECT_THAT(judged.err, HasSubstr("_3 differs from its siblings"));
   EXPECT_THAT(judged.err, Not(HasSubstr("left out")));
+}
+
+// Per sample the rows of the stretches that count for less are those of the model's own form.
+TEST(CliLosses, GoWithRicherModels) {
+  const TemporaryFolder folder;
+  const std::string set = repeated_set(folder, true);
+  for (const char* loss : {"huber", "cauchy:recording"})
+    for (const char* model : {"time_offset", "lever_arm"}) {
+      const ProcessResult run = run_bench({"--data=" + set, "--solver=lm", "--accept=all", "--screen=off",
+                                           std::string("--loss=") + loss, std::string("--model=") + model,
+                                           "--validate=none", "--format=json", "--max-evals=20"});
+      ASSERT_EQ(run.exit_code, 0) << loss << " " << model << ": " << run.err;
+      EXPECT_NE(table(tables(run), "weighted_down"), nullptr) << loss << " " << model;
+    }
+}
+
+// Its path is drawn apart, with its name.
+TEST(CliLosses, PathsOfWhatWasLeftOutAreKeptAndDrawn) {
+  const TemporaryFolder folder;
+  const std::string set = repeated_set(folder, true), out = (folder / "runs").string();
+  ASSERT_EQ(run_bench({"--data=" + set, "--solver=lm", "--accept=all", "--out=" + out}).exit_code, 0);
+  const std::optional<TrackSet> tracks = read_tracks(out);
+  ASSERT_TRUE(tracks);
+  ASSERT_EQ(tracks->recordings.size(), 8u);
+  for (const TrackRecording& r : tracks->recordings) EXPECT_EQ(r.left_out, r.id == "there_3");
+  const std::string page = (folder / "page.html").string();
+  ASSERT_EQ(run_bench({"report", out, "--out=" + page}).exit_code, 0);
+  const std::string text = read_file(page);
+  EXPECT_THAT(text, HasSubstr("Dotted: there_3, left out of the calibration."));
+  EXPECT_THAT(text, HasSubstr("3 (left out)"));
+  EXPECT_THAT(text, Not(HasSubstr("1 (left out)")));
 }
 
 TEST(CliLosses, CleanSetsStayToTheBit) {

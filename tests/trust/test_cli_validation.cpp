@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/files.hpp"
 #include "datasets/dataset.hpp"
 #include "problems/simulation/robot_demo.hpp"
 #include "reports/kinds/trust/bootstrap_record.hpp"
+#include "reports/kinds/trust/profile_record.hpp"
 #include "reports/kinds/trust/validation_record.hpp"
 #include "tests/support/run_process.hpp"
 #include "tests/support/shared_data.hpp"
@@ -210,6 +214,79 @@ TEST(CliValidation, AModelThatIsWorseThanNominalOnNewKindsIsSaidToBeSo) {
       "the fit its error would be 3.546, nominal has 0.393";
   EXPECT_THAT(run.err, HasSubstr(std::string("lm: ") + warning));
   EXPECT_THAT(testing::content(folder / "out/report.html"), HasSubstr(warning));
+}
+
+TEST(CliProfile, IsInTablesRecordsAndOnThePage) {
+  const TemporaryFolder folder;
+  const std::string data = whole_set(folder), out = (folder / "out").string();
+  const ProcessResult run =
+      run_bench({"--solver=lm", data, "--validate=none", "--profile=b,r_left", "--profile-steps=3",
+                 "--combination=mean radius=(r_left+r_right)/2", "--out=" + out});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("J along single parameters"), HasSubstr("Numbers asked for"),
+                             HasSubstr("mean radius")));
+  const RunRecord record = lowest(read_records(out + "/runs.jsonl"));
+  const std::vector<ProfileFigures> profiles = profiles_of(record);
+  ASSERT_EQ(profiles.size(), 2u);
+  EXPECT_GE(profiles[0].values.size(), 7u);
+  EXPECT_LT(profiles[0].lower, profiles[0].upper);
+  ASSERT_EQ(record.trust->combinations.size(), 1u);
+  EXPECT_EQ(record.trust->combinations[0].unit, "m");
+  const std::string page = (folder / "page.html").string();
+  EXPECT_EQ(run_bench({"report", out, "--out=" + page}).exit_code, 0);
+  EXPECT_THAT(read_file(page), HasSubstr("J above its minimum"));
+}
+
+TEST(CliProfile, NamesThatAreNoneAreRefusedBeforeAnythingRuns) {
+  const TemporaryFolder folder;
+  const std::string data = whole_set(folder), out = (folder / "out").string();
+  for (const auto& [option, message] :
+       {std::pair{"--profile=r9", "--profile: found 'r9', expected one of"},
+        std::pair{"--combination=(r_left+r9)/2", "at character 9: found 'r9)/2', expected one of"},
+        std::pair{"--combination=r_left/0", "not a finite number"},
+        std::pair{"--profile-steps=1", "--profile-steps"}}) {
+    const ProcessResult run = run_bench({"--solver=lm", data, option, "--out=" + out});
+    EXPECT_EQ(run.exit_code, 2) << option;
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_FALSE(std::filesystem::exists(out + "/runs.jsonl"));
+  }
+  const ProcessResult other = run_bench({"--solver=lm", "--problem=rosenbrock", "--profile=all"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("is no calibration"));
+}
+
+// What a gate in CI watches of trust: measures with a direction, in `compare` as every other figure.
+TEST(CliTrustMeasures, AreSeenByComparisons) {
+  const TemporaryFolder folder;
+  const std::string data = whole_set(folder);
+  const std::string whole = (folder / "whole").string(), worse = (folder / "worse").string();
+  ASSERT_EQ(run_bench({"--solver=lm", data, "--out=" + whole}).exit_code, 0);
+  const RunRecord record = lowest(read_records(whole + "/runs.jsonl"));
+  const Measure* half = record.measures.find("trust.m33.half_width");
+  ASSERT_NE(half, nullptr);
+  EXPECT_EQ(half->better, Better::Lower);
+  EXPECT_EQ(half->of, "m33");
+  EXPECT_EQ(record.measures.value("trust.share_on_bounds"), 0.0);
+  EXPECT_EQ(record.measures.value("trust.intervals"), 4.0);
+  EXPECT_EQ(record.measures.find("validation.repetitions.total_held_out")->better, Better::Lower);
+  std::filesystem::create_directories(worse);
+  std::ofstream lines(worse + "/runs.jsonl");
+  for (RunRecord r : read_records(whole + "/runs.jsonl")) {
+    const Measures before = r.measures;
+    for (Measure m : before)
+      if (m.name == "validation.repetitions.total_held_out" || m.name == "trust.m33.half_width") {
+        m.value *= 1.2;
+        r.measures.put(m);
+      }
+    lines << to_json_line(r) << "\n";
+  }
+  lines.close();
+  for (const char* name : {"validation.repetitions.total_held_out", "trust.m33.half_width"}) {
+    EXPECT_EQ(run_bench({"compare", whole, worse, "--fail-on=" + std::string(name) + ":+10%"}).exit_code, 1)
+        << name;
+    EXPECT_EQ(run_bench({"compare", whole, worse, "--fail-on=" + std::string(name) + ":+30%"}).exit_code, 0)
+        << name;
+  }
 }
 
 }  // namespace

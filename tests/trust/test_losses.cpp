@@ -165,6 +165,7 @@ TEST(Losses, ValuesAndTheirDerivatives) {
 struct Case {
   const char *robot, *loss;
   CostKind cost;
+  std::vector<std::string> model = {};
 };
 
 class RobustProblem : public ::testing::TestWithParam<Case> {
@@ -176,6 +177,8 @@ class RobustProblem : public ::testing::TestWithParam<Case> {
     options_.rule = set_.robot.rule;
     options_.from_origin = set_.robot.kinematics == "4wis4wid";
     options_.cost = GetParam().cost;
+    options_.model = model_terms(GetParam().model);
+    options_.mount = options_.model.mount;
     squares_ = std::make_unique<CalibrationProblem>(set_.robot, set_.recordings, options_);
     options_.loss = parse_loss(GetParam().loss);
     const Vector start = point();
@@ -255,13 +258,17 @@ TEST_P(RobustProblem, AConstantOutOfReachGivesLeastSquares) {
   EXPECT_GT(std::abs(problem_->cost(z) / squares_->cost(z) - 1), 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Losses, RobustProblem,
-                         ::testing::Values(Case{"4wis4wid", "cauchy", CostKind::EverySample},
-                                           Case{"4wis4wid", "huber:recording", CostKind::EverySample},
-                                           Case{"4wis4wid", "tukey", CostKind::Segments},
-                                           Case{"differential", "cauchy:recording", CostKind::EverySample},
-                                           Case{"differential", "huber", CostKind::Optiodom},
-                                           Case{"mecanum", "tukey=8:recording", CostKind::Segments}));
+INSTANTIATE_TEST_SUITE_P(
+    Losses, RobustProblem,
+    ::testing::Values(Case{"4wis4wid", "cauchy", CostKind::EverySample},
+                      Case{"4wis4wid", "huber:recording", CostKind::EverySample},
+                      Case{"4wis4wid", "tukey", CostKind::Segments},
+                      Case{"differential", "cauchy:recording", CostKind::EverySample},
+                      Case{"differential", "huber", CostKind::Optiodom},
+                      Case{"mecanum", "tukey=8:recording", CostKind::Segments},
+                      Case{"4wis4wid", "cauchy", CostKind::EverySample, {"least_squares", "contact_offset"}},
+                      Case{"4wis4wid", "tukey", CostKind::EverySample, {"steering_zeros", "lever_arm"}},
+                      Case{"4wis4wid", "huber:recording", CostKind::EverySample, {"contact_offsets"}}));
 
 // Each class of methods calls another part of the interface.
 TEST(Losses, EveryClassOfSolversTakesThem) {

@@ -65,7 +65,8 @@ SolverRuns run_lm(const CalibrateStudy& study, const fs::path& set, const Catalo
   solver.data = set.string();
   solver.accept = study.accept;
   solver.calibration = study.calibration;
-  const TrustChoice choice{study.validation};
+  TrustChoice choice;
+  choice.validation = study.validation;
   TrustStudy trust(choice, solver, catalogue, folder, watcher, stop);
   SolverStudy judged = trust.with(solver);
   const std::string command = fmt::format("--data={}", set.string());

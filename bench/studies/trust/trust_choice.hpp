@@ -1,9 +1,12 @@
-// What --validate, --bootstrap and --bootstrap-scheme say.
+// What --validate, --bootstrap, --bootstrap-scheme, --profile, --profile-steps and --combination say.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bench/studies/trust/bootstrap.hpp"
+#include "bench/studies/trust/profile_likelihood.hpp"
+#include "problems/information/formula.hpp"
 
 namespace odobench {
 
@@ -28,6 +31,8 @@ struct TrustChoice {
   ValidationChoice validation;
   int bootstrap = 0;  // replicates; 0: none
   ResampleScheme scheme = ResampleScheme::Stratified;
+  ProfileChoice profile;
+  std::vector<Formula> combinations;  // with different names
 };
 
 }  // namespace odobench

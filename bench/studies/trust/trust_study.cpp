@@ -1,20 +1,25 @@
 #include "bench/studies/trust/trust_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "bench/studies/trust/noise_study.hpp"
 #include "bench/studies/trust/replicate_file.hpp"
 #include "bench/studies/trust/validation.hpp"
+#include "bench/studies/trust_figures.hpp"
+#include "problems/trust/combined_intervals.hpp"
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/trust/bootstrap_record.hpp"
+#include "reports/kinds/trust/profile_record.hpp"
 #include "reports/kinds/trust/validation_sentences.hpp"
 #include "reports/statistics/row_groups.hpp"
 
@@ -64,6 +69,19 @@ std::set<const RunRecord*> shown_runs(const std::vector<RunRecord>& records) {
   return shown;
 }
 
+std::vector<ProfileFigures> profile_figures(const std::vector<ParameterProfile>& profiles) {
+  std::vector<ProfileFigures> list;
+  for (const ParameterProfile& p : profiles) {
+    ProfileFigures one{p.parameter, {}, {}, p.rise, p.ends.lower, p.ends.upper};
+    for (const ProfilePoint& point : p.points) {
+      one.values.push_back(point.value);
+      one.costs.push_back(point.cost);
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 }  // namespace
 
 struct TrustStudy::Subject {
@@ -105,6 +123,13 @@ void TrustStudy::require(const std::vector<LoadedProblem>& loaded) const {
   if (!choice_.validation.automatic && choice_.validation.wanted() && !any)
     throw std::invalid_argument(
         fmt::format("--validate: the problem '{}' is no calibration", loaded.front().name()));
+  for (const auto& [asked, option] : {std::pair(choice_.profile.wanted(), "--profile"),
+                                      std::pair(!choice_.combinations.empty(), "--combination")})
+    if (asked && !any)
+      throw std::invalid_argument(
+          fmt::format("{}: the problem '{}' is no calibration", option, loaded.front().name()));
+  for (const LoadedProblem& one : loaded)
+    if (one.calibration) require_names(one);
   if (choice_.bootstrap == 0) return;
   if (!any)
     throw std::invalid_argument(
@@ -116,8 +141,30 @@ void TrustStudy::require(const std::vector<LoadedProblem>& loaded) const {
   }
 }
 
+// Refuses names and formulas that this calibration does not have.
+void TrustStudy::require_names(const LoadedProblem& one) const {
+  const std::vector<ParameterInfo>& parameters = one.problem.parameters();
+  for (const std::string& name : choice_.profile.parameters) {
+    const auto at = std::find_if(parameters.begin(), parameters.end(),
+                                 [&](const ParameterInfo& p) { return p.name == name; });
+    std::vector<std::string> free;
+    for (const ParameterInfo& p : parameters)
+      if (p.lower < p.upper) free.push_back(p.name);
+    if (at == parameters.end() || !(at->lower < at->upper))
+      throw std::invalid_argument(fmt::format("--profile: found '{}', expected one of {}, or all",
+                                              shown(name), fmt::join(free, ", ")));
+  }
+  for (const Formula& formula : choice_.combinations) try {
+      formula_at(formula, one.apart->robot(), parameters, nominal_of(parameters));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("--combination={}", error.what()));
+    }
+}
+
 bool TrustStudy::judge(const std::vector<LoadedProblem>& loaded, std::vector<RunRecord>& records) {
-  if (!choice_.validation.wanted() && choice_.bootstrap == 0) return false;
+  if (!choice_.validation.wanted() && choice_.bootstrap == 0 && !choice_.profile.wanted() &&
+      choice_.combinations.empty())
+    return false;
   bool changed = false;
   const std::set<const RunRecord*> shown = shown_runs(records);
   try {
@@ -148,6 +195,8 @@ bool TrustStudy::judge(Subject& subject) {
     changed = choice_.validation.own_solvers ? validate_own(subject, asked) : validate_shared(subject, asked);
     warn_of(*subject.lowest);
   }
+  if (!choice_.combinations.empty()) changed = combine(subject) || changed;
+  if (choice_.profile.wanted()) changed = profile(subject) || changed;
   if (choice_.bootstrap > 0) changed = resample(subject) || changed;
   return changed;
 }
@@ -252,15 +301,42 @@ bool TrustStudy::validate_own(Subject& subject, const std::vector<FoldPlan>& pla
   return changed;
 }
 
-bool TrustStudy::resample(Subject& subject) {
+const Refit& TrustStudy::full_fit(Subject& subject) {
   subject.costs();
+  if (subject.full) return *subject.full;
   RefitOptions options;
   options.solvers = &catalogue_.solvers();
   options.start = point_of(*subject.lowest);
-  if (!subject.full)
-    subject.full = refit(subject.each, Vector::Ones(static_cast<Eigen::Index>(subject.each->size())), options,
-                         derive_seed(study_.seed, {"full"}), stop_);
-  options.start = subject.full->z;
+  subject.full = refit(subject.each, Vector::Ones(static_cast<Eigen::Index>(subject.each->size())), options,
+                       derive_seed(study_.seed, {"full"}), stop_);
+  return *subject.full;
+}
+
+bool TrustStudy::combine(Subject& subject) {
+  bool changed = false;
+  for (RunRecord* run : subject.runs) {
+    try {
+      describe_combinations(subject.loaded, choice_.combinations, *run);
+      changed = true;
+    } catch (const std::exception& error) {
+      watcher_.warn(fmt::format("{}: --combination={}", run->label, error.what()));
+    }
+  }
+  return changed;
+}
+
+bool TrustStudy::profile(Subject& subject) {
+  const Vector& z = full_fit(subject).z;
+  put_profiles(profile_figures(profiles(subject.loaded.calibration, subject.costs(), choice_.profile, z,
+                                        subject.threads, watcher_, stop_)),
+               *subject.lowest);
+  return true;
+}
+
+bool TrustStudy::resample(Subject& subject) {
+  RefitOptions options;
+  options.solvers = &catalogue_.solvers();
+  options.start = full_fit(subject).z;
   options.second_start = nominal_of(subject.loaded.problem.parameters());
   const BootstrapPlan plan{static_cast<std::size_t>(choice_.bootstrap), choice_.scheme, study_.seed,
                            subject.threads, options};

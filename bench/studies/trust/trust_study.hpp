@@ -1,4 +1,5 @@
-// Validation, bootstrap and noise of the results of a run, before its records are written for good.
+// Validation, bootstrap, profiles, combinations and noise of the results of a run, before its records are
+// written for good.
 #pragma once
 
 #include <vector>
@@ -15,11 +16,11 @@ namespace odobench {
 // A record counts as the optimum that was validated when its J is at most this above it, relative.
 inline constexpr double kSameOptimum = 1e-6;
 
-// Of each calibration among the problems: one fit by `lm` from the lowest run, its folds, and with
-// --bootstrap its replicates. The figures go to the records that tables show, and to the lowest of each row,
-// whose J is that of the fit within kSameOptimum; the replicates to the lowest run. With
-// ValidationChoice::own_solvers the lowest run of every row is validated by fits of its own solver from the
-// nominal parameters instead.
+// Of each calibration among the problems: one fit by `lm` from the lowest run, its folds, with --bootstrap
+// its replicates and with --profile J along its parameters. The figures go to the records that tables show,
+// and to the lowest of each row, whose J is that of the fit within kSameOptimum; replicates and profiles to
+// the lowest run, combinations to all of them. With ValidationChoice::own_solvers the lowest run of every row
+// is validated by fits of its own solver from the nominal parameters instead.
 //
 // What keeps a validation from being made is said to the watcher: as a note, as a warning where it was asked
 // for. A result that is worse than the nominal parameters on recordings left out is a warning.
@@ -47,6 +48,10 @@ class TrustStudy {
   bool validate_shared(Subject& subject, const std::vector<FoldPlan>& plans);
   bool validate_own(Subject& subject, const std::vector<FoldPlan>& plans);
   bool resample(Subject& subject);
+  void require_names(const LoadedProblem& one) const;
+  const Refit& full_fit(Subject& subject);
+  bool profile(Subject& subject);
+  bool combine(Subject& subject);
   void warn_of(const RunRecord& record) const;
 
   const TrustChoice& choice_;

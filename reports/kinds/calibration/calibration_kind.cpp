@@ -21,6 +21,7 @@
 #include "reports/kinds/trust/loss_tables.hpp"
 #include "reports/kinds/trust/next_steps_tables.hpp"
 #include "reports/kinds/trust/noise_tables.hpp"
+#include "reports/kinds/trust/profile_record.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/kinds/trust/validation_tables.hpp"
 
@@ -121,6 +122,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
     append_if(std::move(table), section);
     append(trust_tables(c), section);
     append(next_steps_tables(c), section);
+    add_profile_figures(c, prefix_of(c), section, document);
   }
   return section;
 }

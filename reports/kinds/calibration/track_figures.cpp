@@ -1,6 +1,7 @@
 #include "reports/kinds/calibration/track_figures.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,8 @@ struct Curve {
 struct Trajectory {
   std::string name;
   std::vector<int> drives;
+  std::vector<int> left_out;  // of the drives
+  std::vector<std::string> ids_left_out;
   std::vector<Curve> paths, errors;
 };
 
@@ -62,8 +65,12 @@ std::vector<Trajectory> trajectories_of(const TrackSet& set) {
   for (const TrackRecording& r : set.recordings) {
     auto at =
         std::find_if(list.begin(), list.end(), [&](const Trajectory& t) { return t.name == r.trajectory; });
-    if (at == list.end()) at = list.insert(list.end(), {r.trajectory, {}, {}, {}});
+    if (at == list.end()) at = list.insert(list.end(), {r.trajectory, {}, {}, {}, {}, {}});
     at->drives.push_back(r.repetition);
+    if (r.left_out) {
+      at->left_out.push_back(r.repetition);
+      at->ids_left_out.push_back(r.id);
+    }
     const auto time = part(set.time_s, r);
     const Columns reference = pose_of(set.reference, r);
     at->paths.push_back({0, r.repetition, time, reference});
@@ -154,7 +161,7 @@ std::string error_rows(const std::vector<Curve>& curves, std::size_t stretches) 
 
 class Charts {
  public:
-  Charts(const TrackSet& set, const Trajectory& trajectory) {
+  Charts(const TrackSet& set, const Trajectory& trajectory) : left_out_(trajectory.left_out) {
     labels_.push_back(kReference);
     for (const StoredTrack& track : set.tracks) labels_.push_back(track.label);
     methods_.assign(labels_.begin() + 1, labels_.end());
@@ -202,8 +209,11 @@ class Charts {
 
   static vega::Choice drive_choice(const Trajectory& trajectory) {
     vega::Choice choice{"drive", "Drive", {}, std::to_string(trajectory.drives.front())};
-    for (const int drive : trajectory.drives)
-      choice.options.emplace_back(std::to_string(drive), std::to_string(drive));
+    for (const int drive : trajectory.drives) {
+      const bool out = std::count(trajectory.left_out.begin(), trajectory.left_out.end(), drive) > 0;
+      choice.options.emplace_back(std::to_string(drive),
+                                  fmt::format("{}{}", drive, out ? " (left out)" : ""));
+    }
     choice.options.emplace_back("all", fmt::format("all {}", trajectory.drives.size()));
     return choice;
   }
@@ -232,9 +242,18 @@ class Charts {
                    {"encoding", encoding}};
     json methods{
         {"transform", {vega::filter("datum.s > 0")}}, {"mark", {{"type", "line"}}}, {"encoding", encoding}};
-    return with_reference ? json::array({reference, methods}) : json::array({methods});
+    json all = with_reference ? json::array({reference, methods}) : json::array({methods});
+    if (left_out_.empty()) return all;
+    const std::string out = fmt::format("indexof([{}], datum.d) >= 0", fmt::join(left_out_, ", "));
+    all.back()["transform"].push_back(vega::filter("!(" + out + ")"));
+    json apart = methods;
+    apart["transform"].push_back(vega::filter(out));
+    apart["mark"] = {{"type", "line"}, {"strokeDash", {2, 3}}, {"opacity", 0.6}};
+    all.push_back(std::move(apart));
+    return all;
   }
 
+  std::vector<int> left_out_;
   std::vector<std::string> labels_, methods_;
   std::vector<vega::Choice> choices_;
 };
@@ -253,7 +272,11 @@ void add_track_figures(const TrackSet& set, const std::string& prefix, Section& 
     double parts = 0;
     document.datasets[path_data] = path_rows(t.paths, rows / list.size(), parts);
     document.datasets[error_data] = error_rows(t.errors, stretches);
-    const std::string thinned = fmt::format("Curves are thinned to within 1/{:.0f} of the range.", parts);
+    std::string thinned = fmt::format("Curves are thinned to within 1/{:.0f} of the range.", parts);
+    std::string left_out;
+    if (!t.ids_left_out.empty())
+      left_out = fmt::format(" Dotted: {}, left out of the calibration.", fmt::join(t.ids_left_out, ", "));
+    thinned += left_out;
     const auto add = [&](const std::string& kind, const std::string& title, const std::string& caption,
                          json spec) {
       section.blocks.push_back(
@@ -269,8 +292,8 @@ void add_track_figures(const TrackSet& set, const std::string& prefix, Section& 
     caption = fmt::format(
         "Distance from motion capture in x, y [m] and heading [rad]. Of longer curves the smallest and the "
         "largest value of "
-        "each of {} stretches is drawn: no extreme is hidden.",
-        stretches);
+        "each of {} stretches is drawn: no extreme is hidden.{}",
+        stretches, left_out);
     add("error", "absolute errors over time", caption, charts.errors(error_data, caption));
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "reports/kinds/trust/profile_record.hpp"
 
 namespace odobench {
 namespace {
@@ -136,6 +137,35 @@ Table parameter_intervals(const Comparison& comparison, const std::vector<TrustR
   return table;
 }
 
+Table combinations_table(const Comparison& comparison, const std::vector<TrustRow>& rows) {
+  Table table = table_of("combinations", "Numbers asked for, +- 95 %", comparison,
+                         {text_column("name"), text_column("formula"), text_column("unit"),
+                          number_column("nominal"), number_column("estimate")});
+  bool of_the_map = false, others = false;
+  for (const TrustRow& row : rows)
+    for (const CombinationRecord& c : row.trust->combinations) {
+      const ReadUnit unit = read_unit(c.unit);
+      const int digits = digits_of(unit.factor * c.interval.half_width);
+      std::vector<Cell> cells = {text_cell(row.label),
+                                 text_cell(c.name),
+                                 text_cell(c.formula),
+                                 text_cell(unit.name),
+                                 value_cell(unit.factor * c.nominal, digits),
+                                 value_cell(unit.factor * c.value, digits)};
+      add_interval(c.interval, unit.factor, digits, cells);
+      table.rows.push_back(std::move(cells));
+      (c.of_the_map ? of_the_map : others) = true;
+    }
+  if (of_the_map)
+    table.notes.emplace_back("What is made of the numbers that the drives determine has their intervals.");
+  if (others)
+    table.notes.emplace_back(
+        "What is not made of the numbers that the drives determine alone has the intervals of single "
+        "parameters: "
+        "none while any lies on a bound.");
+  return table;
+}
+
 Table drive_errors_table(const Comparison& comparison, const std::vector<TrustRow>& rows) {
   Table table = table_of("new_drives", "How far off a new drive can be, +- 95 %", comparison,
                          {text_column("drive"), text_column("what", "error"), text_column("unit"),
@@ -179,6 +209,8 @@ std::vector<Table> trust_tables(const Comparison& comparison) {
   const std::vector<TrustRow> rows = rows_of(comparison);
   finish_into(determined_table(comparison, rows), tables);
   finish_into(parameter_intervals(comparison, rows), tables);
+  finish_into(combinations_table(comparison, rows), tables);
+  if (std::optional<Table> profile = profile_table(comparison)) finish_into(std::move(*profile), tables);
   finish_into(drive_errors_table(comparison, rows), tables);
   return tables;
 }

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
-#include "bench/catalogue/problem_factory.hpp"
 #include "problems/trust/trust.hpp"
 #include "problems/trust/twist_map.hpp"
 #include "solvers/solve.hpp"
@@ -46,8 +45,8 @@ Held& Held::operator+=(const Held& other) {
   return *this;
 }
 
-SetCoverage coverage_of(const Dataset& set, const Dataset& fresh) {
-  const CalibrationOptions options = calibration_options(set.robot);
+SetCoverage coverage_of(const Dataset& set, const Dataset& fresh, const CalibrationChoice& choice) {
+  const CalibrationOptions options = calibration_options(set.robot, choice);
   const auto problem = std::make_shared<const CalibrationProblem>(set.robot, set.recordings, options);
   const Problem handle(problem);
   const Vector z = solve(handle, {"lm", {}}, handle.start(), {}).x, truth = truth_of(set);
@@ -57,6 +56,7 @@ SetCoverage coverage_of(const Dataset& set, const Dataset& fresh) {
 
   SetCoverage result;
   result.on_bounds = static_cast<int>(trust.active.size());
+  result.rule_said = !trust.moved_by_rule.empty();
   result.systematic = trust.kind_test.systematic;
   for (const DeterminedNumber& d : trust.determined)
     for (const TwistNumber& true_number : map.numbers) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "bench/catalogue/problem_factory.hpp"
 #include "datasets/dataset.hpp"
 
 namespace odobench::testing {
@@ -23,10 +24,11 @@ struct SetCoverage {
   Held parameters, end_errors;
   int on_bounds = 0;
   bool systematic = false;
+  bool rule_said = false;  // that the rule of integration moves a number
 };
 
 // Calibrates `set` with lm, judges with its parameter set "truth" and with the drives of `fresh`, which the
-// same robot made.
-SetCoverage coverage_of(const Dataset& set, const Dataset& fresh);
+// same robot made. `choice`: rule and model of the calibration, which has the parameters of the truth.
+SetCoverage coverage_of(const Dataset& set, const Dataset& fresh, const CalibrationChoice& choice = {});
 
 }  // namespace odobench::testing
