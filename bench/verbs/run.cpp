@@ -43,6 +43,19 @@ struct RunOptions {
   std::string config;  // file with options that the command line does not give
 };
 
+// --start.
+void add_start(CLI::App& app, SolverStudy& study) {
+  add_value(app, "--start", "nominal|random|METHOD",
+            "where runs begin; random starts are shared by all solvers; the result of a classical method of "
+            "the robot, e.g. censi [nominal; with a loss the least-squares solution]",
+            [&study](const std::string& text) {
+              require_start(text);
+              study.random_start = text == "random";
+              study.nominal_start = text == "nominal";
+              study.start_method = text == "nominal" || text == "random" ? "" : text;
+            });
+}
+
 void add_options(CLI::App& app, RunOptions& options) {
   app.add_option(
          "--solver", options.study.solvers,
@@ -72,15 +85,7 @@ void add_options(CLI::App& app, RunOptions& options) {
                  "calibrate although 'bench inspect' finds errors of these kinds, or 'all'; a comma list")
       ->type_name("KIND,...")
       ->allow_extra_args(false);
-  add_value(app, "--start", "nominal|random|METHOD",
-            "where runs begin; random starts are shared by all solvers; the result of a classical method of "
-            "the robot, e.g. censi [nominal; with a loss the least-squares solution]",
-            [&options](const std::string& text) {
-              require_start(text);
-              options.study.random_start = text == "random";
-              options.study.nominal_start = text == "nominal";
-              options.study.start_method = text == "nominal" || text == "random" ? "" : text;
-            });
+  add_start(app, options.study);
   app.add_flag("--check-derivatives", options.study.check_derivatives,
                "before the run, compare Jacobian and gradient with differences at the start and at three "
                "random points; exit "

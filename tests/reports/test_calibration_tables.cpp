@@ -64,9 +64,8 @@ std::vector<RunRecord> calibration_records() {
 
 TEST(ComparisonTables, OrderOfTablesAndRowsIsStable) {
   const auto tables = comparison_tables(calibration_records());
-  EXPECT_THAT(ids(tables),
-              ElementsAre("verdict", "overview", "found", "errors.line_x", "errors.circle", "parameters",
-                          "totals", "solvers"));
+  EXPECT_THAT(ids(tables), ElementsAre("verdict", "overview", "found", "errors.line_x", "errors.circle",
+                                       "parameters", "totals", "solvers"));
   EXPECT_THAT(labels(tables[0]), ElementsAre("use", "bounds"));
   EXPECT_THAT(labels(tables[1]), ElementsAre("nominal", "published", "lm", "x", "ga"));
   EXPECT_THAT(labels(tables[3]), ElementsAre("nominal", "published", "lm", "ga"));
@@ -229,14 +228,14 @@ TEST(ComparisonTables, GroupsPerProblemAndDataSet) {
   other.dataset = "vitko2024";
   const auto tables =
       comparison_tables({calibration_record("lm", "run", 100, 0.1), other, run_record("lm", 1)});
-  EXPECT_THAT(ids(tables),
-              ElementsAre("calibration.demo.overview", "calibration.demo.found",
-                          "calibration.demo.errors.line_x", "calibration.demo.errors.circle",
-                          "calibration.demo.parameters", "calibration.demo.totals",
-                          "calibration.demo.solvers", "calibration.vitko2024.overview",
-                          "calibration.vitko2024.found", "calibration.vitko2024.errors.line_x",
-                          "calibration.vitko2024.errors.circle", "calibration.vitko2024.parameters",
-                          "calibration.vitko2024.totals", "calibration.vitko2024.solvers", "sphere.solvers"));
+  EXPECT_THAT(
+      ids(tables),
+      ElementsAre("calibration.demo.overview", "calibration.demo.found", "calibration.demo.errors.line_x",
+                  "calibration.demo.errors.circle", "calibration.demo.parameters", "calibration.demo.totals",
+                  "calibration.demo.solvers", "calibration.vitko2024.overview", "calibration.vitko2024.found",
+                  "calibration.vitko2024.errors.line_x", "calibration.vitko2024.errors.circle",
+                  "calibration.vitko2024.parameters", "calibration.vitko2024.totals",
+                  "calibration.vitko2024.solvers", "sphere.solvers"));
   EXPECT_EQ(tables[2].title, "Errors on trajectory line_x (calibration, demo)");
   EXPECT_EQ(tables.back().title, "Solvers (sphere)");
   EXPECT_EQ(cell(tables[6], "lm", "gap").value, 0) << "the best J of another set does not count";

@@ -189,9 +189,8 @@ TEST(CliValidation, ReplicatesOfAnotherSeedAreReplaced) {
 TEST(CliValidation, CalibrateAnswersToo) {
   const TemporaryFolder folder;
   whole_set(folder);
-  const ProcessResult run =
-      run_bench({"calibrate", (folder / "set.json").string(), "--tables=validation,folds",
-                 "--out=" + (folder / "out").string()});
+  const ProcessResult run = run_bench({"calibrate", (folder / "set.json").string(),
+                                       "--tables=validation,folds", "--out=" + (folder / "out").string()});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, AllOf(HasSubstr("same drives again"), HasSubstr("Folds of the validation")));
   EXPECT_THAT(testing::content(folder / "out/report.html"), HasSubstr("Folds of the validation"));

@@ -145,7 +145,7 @@ Table combinations_table(const Comparison& comparison, const std::vector<TrustRo
   for (const TrustRow& row : rows)
     for (const CombinationRecord& c : row.trust->combinations) {
       const ReadUnit unit = read_unit(c.unit);
-      const int digits = digits_of(unit.factor * c.interval.half_width);
+      const int digits = digits_of_half_width(unit.factor * c.interval.half_width, kPlainDigits);
       std::vector<Cell> cells = {text_cell(row.label),
                                  text_cell(c.name),
                                  text_cell(c.formula),
