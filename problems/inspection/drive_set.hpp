@@ -11,6 +11,8 @@
 
 namespace odobench::inspection {
 
+inline constexpr double kInches = 1 / 0.0254;  // of a metre
+
 // Samples of a set that is kept: some 300 bytes each.
 inline constexpr std::size_t kKeptSamples = 1'000'000;
 

@@ -16,8 +16,7 @@ namespace {
 constexpr double kFits = 0.06;  // no explanation is looked for below it
 constexpr double kExplains = 1.0 / 3;
 constexpr double kBackwards = -0.3;
-constexpr double kClearly = 0.9;  // of a score: less is a better explanation, more a like one
-constexpr double kInches = 1 / 0.0254;
+constexpr double kClearly = 0.9;           // of a score: less is a better explanation, more a like one
 constexpr std::size_t kMostExchanged = 6;  // 719 permutations
 
 // A fault, how well the data fit without it, and how to take it out of a drive.

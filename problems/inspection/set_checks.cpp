@@ -19,8 +19,7 @@ constexpr double kFactor = 1.12;  // what nominal values are not off by
 constexpr double kNamed = 0.15;   // of a logarithm
 constexpr double kAngle = 1 * kDegree;
 constexpr double kSpread = 0.6 * kDegree;
-constexpr double kLever = 0.01;  // m
-constexpr double kInches = 1 / 0.0254;
+constexpr double kLever = 0.01;       // m
 constexpr Index kFewestSamples = 10;  // that say something
 
 enum class Motion { Straight, Turning, Other };

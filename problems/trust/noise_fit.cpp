@@ -240,8 +240,8 @@ std::string choose(const Material& m, bool with_bias, NoiseFit& fit, std::vector
     if (m.repeated[kind]) apart += static_cast<int>(m.members[kind].size()) - 1;
   }
   if (movers < kFewestDrives)
-    return fmt::format("{} drives with a reference at two places of a path, expected at least {}", movers,
-                       kFewestDrives);
+    return fmt::format("{} drive{} with a reference at two places of a path, expected at least {}", movers,
+                       movers == 1 ? "" : "s", kFewestDrives);
   fit.separated = apart >= kFewestFree && !with_bias;
   for (std::size_t n = 0; n < m.parts.size(); ++n)
     if (!m.parts[n].empty() && (!fit.separated || m.repeated[m.kind_of[n]])) used.push_back(n);

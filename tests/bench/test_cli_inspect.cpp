@@ -147,7 +147,7 @@ TEST(CliInspect, RunRefusesWhatDecidesTheFitUnlessAccepted) {
     const ProcessResult result = run_bench({"--solver=lm", data, accepted, "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, HasSubstr("warning: wheel_reversed: "));
-    EXPECT_THAT(table(result, "parameters").at("notes").dump(), HasSubstr("wheel_reversed: wheel 2"));
+    EXPECT_THAT(table(result, "found").at("notes").dump(), HasSubstr("wheel_reversed: wheel 2"));
   }
   EXPECT_EQ(run_bench({"--solver=lm", data, "--accept=gap"}).exit_code, 3);
   const ProcessResult wrong = run_bench({"--solver=lm", data, "--accept=wheel_reverse"});
@@ -184,15 +184,15 @@ TEST(CliInspect, ABadFitIsSaidToBeOne) {
   const std::string data = "--data=" + (folder / "set.json").string();
   const ProcessResult result = run_bench({"--solver=lm", data, "--screen=off", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(table(result, "parameters").at("notes").dump(),
+  EXPECT_THAT(table(result, "found").at("notes").dump(),
               HasSubstr("the drive " + d.recordings[0].id + " makes "));
   const auto fit = table(result, "fit");
   EXPECT_EQ(fit.at("rows").size(), d.recordings.size() + 1);
   EXPECT_EQ(fit.at("rows").back().at("recording"), "all");
   const ProcessResult clean = run_bench({"--solver=lm", "--json"});
-  EXPECT_THAT(table(clean, "parameters").at("notes").dump(), Not(HasSubstr("the drive ")));
-  EXPECT_THAT(table(clean, "parameters").at("notes").dump(), Not(HasSubstr("sit on bounds")));
-  EXPECT_THAT(table(clean, "parameters").at("notes").dump(), Not(HasSubstr("does not help")));
+  EXPECT_THAT(table(clean, "found").at("notes").dump(), Not(HasSubstr("the drive ")));
+  EXPECT_THAT(table(clean, "found").at("notes").dump(), Not(HasSubstr("sit on bounds")));
+  EXPECT_THAT(table(clean, "found").at("notes").dump(), Not(HasSubstr("does not help")));
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ using testing::run_bench;
 
 std::set<std::string> tables_of(const std::string& json) {
   std::set<std::string> ids;
-  for (const nlohmann::json& table : nlohmann::json::parse(json).at("tables")) ids.insert(table.at("id"));
+  const nlohmann::json parsed = nlohmann::json::parse(json);
+  for (const nlohmann::json& table : parsed.at("tables")) ids.insert(table.at("id"));
   return ids;
 }
 
