@@ -59,7 +59,7 @@ ChosenTables key_tables(std::vector<Table> tables) {
   ChosenTables chosen;
   std::vector<Table> others;
   for (Table& table : tables) (table.key ? chosen.tables : others).push_back(std::move(table));
-  if (chosen.tables.empty()) return {std::move(others), ""};
+  if (chosen.tables.empty()) return {std::move(others), "", ""};
   if (!others.empty())
     chosen.remark = fmt::format("more: --tables=all, or some of {}", fmt::join(short_names(others), ","));
   return chosen;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "base/range.hpp"
 #include "reports/figures/vega.hpp"
 #include "reports/kinds/trust/trust_tables.hpp"
 #include "reports/records/series.hpp"
@@ -15,9 +15,6 @@ namespace odobench {
 namespace {
 
 using vega::json;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string key(const std::string& parameter, const char* what) {
   return "profile." + parameter + "." + what;
@@ -79,7 +76,7 @@ std::vector<ProfileFigures> profiles_of(const RunRecord& record) {
     const auto* costs = series_of(record, key(p.name, "cost").c_str(), values->second.size());
     if (costs == nullptr) continue;
     const std::optional<double> rise = record.measures.value(key(p.name, "rise"));
-    ProfileFigures one{p.name, values->second, *costs, rise.value_or(kNaN), kNaN, kNaN};
+    ProfileFigures one{p.name, values->second, *costs, rise.value_or(kNotANumber), kNotANumber, kNotANumber};
     if (rise) {
       one.lower = record.measures.value(key(p.name, "lower")).value_or(-kInfinity);
       one.upper = record.measures.value(key(p.name, "upper")).value_or(kInfinity);
