@@ -120,6 +120,7 @@ Section parameters(const std::vector<Comparison>& comparisons, const std::vector
     add_parameter_figure(c, prefix_of(c), section, document);
     table->notes.insert(table->notes.end(), notes.begin(), notes.end());
     append_if(std::move(table), section);
+    append_if(found_table(c), section);
     append(trust_tables(c), section);
     append(next_steps_tables(c), section);
     add_profile_figures(c, prefix_of(c), section, document);

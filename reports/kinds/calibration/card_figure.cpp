@@ -127,22 +127,23 @@ json path_view(const Drive& drive, const Square& square, int panel, const std::v
 }
 
 // Deviations from nominal in %. False without a free parameter.
-bool write_parameters(const RunRecord& record, std::string& csv) {
-  csv = "parameter,value,low,high,lower,upper\n";
+bool write_parameters(const RunRecord& record, const std::string& label, std::string& csv) {
+  csv = "label,parameter,value,low,high,lower,upper\n";
   bool any = false;
   for (const ParameterValue& p : record.parameters) {
     if (p.lower >= p.upper) continue;
     const auto percent = [&](double v) { return 100 * (v - p.nominal) / deviation_scale(p); };
     const double half = 100 * relative_half_width(record, p).value_or(0);
-    fmt::format_to(std::back_inserter(csv), "{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", csv_field(p.name),
-                   percent(p.value), percent(p.value) - half, percent(p.value) + half, percent(p.lower),
-                   percent(p.upper));
+    fmt::format_to(std::back_inserter(csv), "{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", csv_field(label),
+                   csv_field(p.name), percent(p.value), percent(p.value) - half, percent(p.value) + half,
+                   percent(p.lower), percent(p.upper));
     any = true;
   }
   return any;
 }
 
-json parameter_view(const std::string& data, const RunRecord& record, const std::string& label) {
+json parameter_view(const std::string& data, const RunRecord& record,
+                    const std::vector<std::string>& labels) {
   std::vector<std::string> names;
   for (const ParameterValue& p : record.parameters)
     if (p.lower < p.upper) names.push_back(p.name);
@@ -161,8 +162,7 @@ json parameter_view(const std::string& data, const RunRecord& record, const std:
       layer("lower", "upper", {{"type", "rule"}, {"style", "muted"}, {"strokeWidth", 5}, {"opacity", 0.25}});
   json interval = layer("low", "high", {{"type", "rule"}, {"strokeWidth", 1.5}});
   json value = layer("value", nullptr, {{"type", "point"}, {"filled", true}, {"size", 40}});
-  for (json* l : {&interval, &value})
-    (*l)["encoding"]["color"] = {{"datum", label}, {"type", "nominal"}, {"legend", nullptr}};
+  for (json* l : {&interval, &value}) (*l)["encoding"]["color"] = vega::line_color("label", labels);
   return {{"width", kPanel},
           {"height", kPanel},
           {"title", {{"text", "Parameters"}, {"subtitle", "band: box, line: 95 % interval"}}},
@@ -216,9 +216,9 @@ void add_card_figure(const Comparison& comparison, const std::vector<PlacedTrack
     caption = panel == 2 ? "The drive that the calibration improved most and the one that it improved least. "
                          : "The drive of the set. ";
   }
-  if (std::string csv; write_parameters(*best.record, csv)) {
+  if (std::string csv; write_parameters(*best.record, best.row->label, csv)) {
     document.datasets[parameter_data] = csv;
-    views.push_back(parameter_view(parameter_data, *best.record, best.row->label));
+    views.push_back(parameter_view(parameter_data, *best.record, names));
   }
   if (views.empty()) return;
   const std::string words = change_words(comparison);
