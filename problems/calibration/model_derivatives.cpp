@@ -13,6 +13,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+namespace {
+
+// The rows of the reference that a lane of a pass is at: act(step, row, place of its errors in Pass::errors).
+template <class Drive, class Pass, class Act>
+void for_each_row(const Drive& drive, const Pass& pass, int lane, const Act& act) {
+  for (Index step = 0; step < pass.task.steps; ++step) {
+    const Index k = lane * pass.task.steps + step;
+    if (k >= pass.intervals) break;
+    const int row = drive.row_of[static_cast<std::size_t>(k)];
+    if (row >= 0) act(step, row, step * kernel::kErrors * pass.width + lane);
+  }
+}
+
+}  // namespace
+
 // Newton's method for the start that J is least at, from the usual one; in the recording's own rows.
 Vector3d ModelForm::fit_start(const Drive& drive, const Point& at, const Pass& pass) const {
   const double weight = heading_weight() / options_.position_weight;
@@ -67,11 +82,7 @@ void ModelForm::find_errors(const Drive& drive, const Point& at, bool free_start
     const Vector3d begin = composed(origin, from);
     const double c = std::cos(begin[2]), s = std::sin(begin[2]);
     Pass::Sums sums;
-    for (Index step = 0; step < pass.task.steps; ++step) {
-      const Index k = lane * pass.task.steps + step;
-      if (k >= pass.intervals) break;
-      const int row = drive.row_of[static_cast<std::size_t>(k)];
-      if (row < 0) continue;
+    for_each_row(drive, pass, lane, [&](Index step, int row, Index place) {
       const Vector2d p = pass.in_lane(step, lane, at.lever);
       const double wx = begin[0] + c * p[0] - s * p[1] - drive.reference(0, row),
                    wy = begin[1] + s * p[0] + c * p[1] - drive.reference(1, row);
@@ -79,7 +90,7 @@ void ModelForm::find_errors(const Drive& drive, const Point& at, bool free_start
           pass.start[2] + from[2] + pass.at(step, kernel::kHeadingSum, lane) - drive.reference(2, row);
       if (drive.wrapped) et = wrapped_angle(et);
       const double ex = c * wx + s * wy, ey = c * wy - s * wx;
-      double* to = pass.errors.data() + step * kernel::kErrors * pass.width + lane;
+      double* to = pass.errors.data() + place;
       to[0] = ex;
       to[pass.width] = ey;
       to[2 * pass.width] = et;
@@ -94,7 +105,7 @@ void ModelForm::find_errors(const Drive& drive, const Point& at, bool free_start
       sums.qpe += p[0] * ey - p[1] * ex;
       sums.et += weight * et;
       sums.pe += p[0] * ex + p[1] * ey;
-    }
+    });
     pass.sums.push_back(sums);
   }
   pass.squares = squares;
@@ -189,17 +200,13 @@ void ModelForm::put_residuals(const Drive& drive, const Pass& pass, VectorRef r)
   for (int lane = 0; lane < pass.width; ++lane) {
     const double angle = pass.frame + pass.lanes[static_cast<std::size_t>(lane)][2], c = std::cos(angle),
                  s = std::sin(angle);
-    for (Index step = 0; step < pass.task.steps; ++step) {
-      const Index k = lane * pass.task.steps + step;
-      if (k >= pass.intervals) break;
-      const int row = drive.row_of[static_cast<std::size_t>(k)];
-      if (row < 0) continue;
-      const double* e = pass.errors.data() + step * kernel::kErrors * pass.width + lane;
+    for_each_row(drive, pass, lane, [&](Index, int row, Index place) {
+      const double* e = pass.errors.data() + place;
       const Index first = per_row() * (row - 1);
       r[first] = position * (c * e[0] - s * e[pass.width]);
       r[first + 1] = position * (s * e[0] + c * e[pass.width]);
       if (per_row() == 3) r[first + 2] = heading * e[2 * pass.width];
-    }
+    });
   }
 }
 
@@ -219,13 +226,9 @@ void ModelForm::write_rows(const Drive& drive, const Point& at, VectorRef r, Mat
   for (int lane = 0; lane < pass.width; ++lane) {
     const double angle = pass.frame + pass.lanes[static_cast<std::size_t>(lane)][2], c = std::cos(angle),
                  s = std::sin(angle);
-    for (Index step = 0; step < pass.task.steps; ++step) {
-      const Index k = lane * pass.task.steps + step;
-      if (k >= pass.intervals) break;
-      const int row = drive.row_of[static_cast<std::size_t>(k)];
-      if (row < 0) continue;
+    for_each_row(drive, pass, lane, [&](Index step, int row, Index place) {
       const Vector2d p = pass.in_lane(step, lane, at.lever);
-      const double* e = pass.errors.data() + step * kernel::kErrors * pass.width + lane;
+      const double* e = pass.errors.data() + place;
       const Index first = per_row() * (row - 1);
       for (Index q = 0; q < all; ++q) {
         Vector3d v(sigma(0, q) - p[1] * sigma(2, q), sigma(1, q) + p[0] * sigma(2, q), sigma(2, q));
@@ -243,7 +246,7 @@ void ModelForm::write_rows(const Drive& drive, const Point& at, VectorRef r, Mat
           if (q == columns_ + 2) twist_start += twist;
         }
       }
-    }
+    });
     next_lane(pass, lane, sums.data(), sigma);
   }
   if (!free_starts()) return;

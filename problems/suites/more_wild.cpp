@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "problems/classic/mgh_problem.hpp"
 #include "problems/suites/more_wild_functions.hpp"
 
 namespace odobench {
@@ -106,44 +107,6 @@ void for_each_case(const Act& act) {
       if (factor == 1 || c.far) act(c, factor);
 }
 
-class MoreWildModel {
- public:
-  MoreWildModel(const Case& c, int factor)
-      : name_(case_name(c, factor)),
-        evaluate_(function_of(c.function).evaluate),
-        residual_count_(odobench::residual_count(c)),
-        optimum_(optimum_of(c)) {
-    const Vector start = start_of(c, factor);
-    for (int i = 0; i < c.n; ++i) {
-      double most = std::max(1.0, std::abs(start[i]));
-      for (const Vector& x : optimum_.minimisers) most = std::max(most, std::abs(x[i]));
-      parameters_.push_back({fmt::format("x{}", i + 1), "1", start[i], -10 * most, 10 * most});
-    }
-  }
-  std::string name() const { return name_; }
-  const std::vector<ParameterInfo>& parameters() const { return parameters_; }
-  std::optional<double> known_optimum() const { return optimum_.cost; }
-  const std::vector<Vector>& known_minimisers() const { return optimum_.minimisers; }
-  Eigen::Index residual_count() const { return residual_count_; }
-  double cost(const ConstVectorRef& x) const {
-    Vector r(residual_count_);
-    residuals(x, r);
-    return r.squaredNorm();
-  }
-  void residuals(const ConstVectorRef& x, VectorRef r) const { evaluate_(x, r, nullptr); }
-  void residuals_and_jacobian(const ConstVectorRef& x, VectorRef r, MatrixRef j) const {
-    j.setZero();
-    evaluate_(x, r, &j);
-  }
-
- private:
-  std::string name_;
-  decltype(MghFunction::evaluate) evaluate_;
-  Eigen::Index residual_count_;
-  MghOptimum optimum_;
-  std::vector<ParameterInfo> parameters_;
-};
-
 }  // namespace
 
 std::vector<ClassicEntry> more_wild_entries() {
@@ -166,7 +129,9 @@ std::vector<ClassicEntry> more_wild_entries() {
 Problem make_more_wild_problem(const std::string& name) {
   std::optional<Problem> problem;
   for_each_case([&](const Case& c, int factor) {
-    if (name == case_name(c, factor)) problem.emplace(MoreWildModel(c, factor));
+    if (name == case_name(c, factor))
+      problem.emplace(
+          MghProblem(name, function_of(c.function), optimum_of(c), residual_count(c), start_of(c, factor)));
   });
   if (!problem) throw std::invalid_argument(fmt::format("unknown problem '{}'", name));
   return *problem;

@@ -10,6 +10,10 @@ namespace odobench::vega {
 
 using nlohmann::json;
 
+// How legends call what results are compared with, and the row of parameters that nobody fitted.
+inline constexpr const char* kReferenceLabel = "motion capture";
+inline constexpr const char* kNominalLabel = "nominal";
+
 // {"name", "format": {"type": "csv", "parse": ..}}: columns listed in `numbers` are numbers, the others text.
 json csv_data(const std::string& name, const std::vector<std::string>& numbers);
 

@@ -2,26 +2,25 @@
 
 #include <algorithm>
 
+#include "reports/figures/vega.hpp"
+
 namespace odobench {
 namespace {
 
 using nlohmann::json;
 
-constexpr const char* kNominal = "nominal";
-constexpr const char* kReference = "motion capture";
-
 // Places that are not taken have names of blanks, which no legend shows.
 std::vector<std::string> shared_domain(const std::vector<std::string>& labels) {
   std::vector<std::string> domain, methods;
   for (const std::string& label : labels)
-    if (label != kNominal && label != kReference) methods.push_back(label);
+    if (label != vega::kNominalLabel && label != vega::kReferenceLabel) methods.push_back(label);
   std::string blank;
   for (std::size_t next = 0; domain.empty() || next < methods.size();) {
     const bool first = domain.empty();
     for (std::size_t place = 0; place < kMethodColours; ++place)
       domain.push_back(next < methods.size() ? methods[next++] : (blank += ' '));
-    domain.push_back(first ? kNominal : (blank += ' '));
-    domain.push_back(first ? kReference : (blank += ' '));
+    domain.push_back(first ? vega::kNominalLabel : (blank += ' '));
+    domain.push_back(first ? vega::kReferenceLabel : (blank += ' '));
   }
   return domain;
 }

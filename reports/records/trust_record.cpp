@@ -1,17 +1,15 @@
 #include "reports/records/trust_record.hpp"
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/json_node.hpp"
+#include "base/range.hpp"
 
 namespace odobench {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 // The fields of an interval stand beside those of what it is of.
 json with_interval(json out, const IntervalRecord& i) {
@@ -35,10 +33,6 @@ IntervalRecord interval_from(const JsonNode& node) {
   if (const auto refused = node.find("refused")) i.refused = refused->text();
   i.reason = node.text_or_empty("reason");
   return i;
-}
-
-json list_of(const std::vector<std::string>& texts) {
-  return texts;
 }
 
 std::vector<std::string> texts_from(const JsonNode& node) {
@@ -80,8 +74,8 @@ json next_json(const NextStepsRecord& next) {
   if (!next.skipped.empty()) return {{"skipped", next.skipped}};
   json out{{"first_words", next.first_words},
            {"second_words", next.second_words},
-           {"open", list_of(next.open)},
-           {"settled", list_of(next.settled)},
+           {"open", json(next.open)},
+           {"settled", json(next.settled)},
            {"largest_before", finite_or_null(next.largest_before)},
            {"largest_after", finite_or_null(next.largest_after)},
            {"drives", json::array()}};
@@ -120,14 +114,14 @@ NextStepsRecord next_from(const JsonNode& node) {
 }  // namespace
 
 IntervalRecord::IntervalRecord()
-    : deviation(kNotGiven),
-      df(kNotGiven),
-      half_width(kNotGiven),
-      same_deviation(kNotGiven),
-      same_df(kNotGiven),
-      same_half_width(kNotGiven) {}
+    : deviation(kNotANumber),
+      df(kNotANumber),
+      half_width(kNotANumber),
+      same_deviation(kNotANumber),
+      same_df(kNotANumber),
+      same_half_width(kNotANumber) {}
 
-TrustRecord::TrustRecord() : kind_f(kNotGiven), kind_p(kNotGiven) {}
+TrustRecord::TrustRecord() : kind_f(kNotANumber), kind_p(kNotANumber) {}
 
 std::vector<Measure> trust_measures(const TrustRecord& trust) {
   std::vector<Measure> list;
@@ -159,8 +153,8 @@ json to_json(const TrustRecord& trust) {
            {"determined", json::array()},
            {"parameters", json::array()},
            {"drives", json::array()},
-           {"remarks", list_of(trust.remarks)},
-           {"sentences", list_of(trust.sentences)}};
+           {"remarks", json(trust.remarks)},
+           {"sentences", json(trust.sentences)}};
   for (const DeterminedRecord& d : trust.determined)
     out["determined"].push_back(with_interval({{"name", d.name},
                                                {"words", d.words},

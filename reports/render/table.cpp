@@ -219,6 +219,17 @@ std::string render(const std::vector<Table>& given, Format format, const RenderO
   throw std::invalid_argument("not a table format");
 }
 
+bool empty_column(const Table& table, std::size_t c) {
+  return std::all_of(table.rows.begin(), table.rows.end(),
+                     [c](const std::vector<Cell>& row) { return row[c].empty(); });
+}
+
+void erase_column(Table& table, std::size_t c) {
+  const auto at = static_cast<std::ptrdiff_t>(c);
+  table.columns.erase(table.columns.begin() + at);
+  for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
+}
+
 std::vector<std::string> sentences_of(const Table& table) {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (table.columns[c].id != table.sentences) continue;

@@ -127,6 +127,10 @@ std::string render_latex(const std::vector<Table>& tables);
 // doubled.
 std::string csv_field(const std::string& text);
 
+// Whether no row has anything in column `c`; the table without it.
+bool empty_column(const Table& table, std::size_t c);
+void erase_column(Table& table, std::size_t c);
+
 // The cells of the column Table::sentences. Throws std::invalid_argument when there is no such column.
 std::vector<std::string> sentences_of(const Table& table);
 

@@ -34,12 +34,8 @@ std::string prefix_of(const Comparison& comparison) {
 
 // The table without the columns of these ids.
 Table without(Table table, const std::set<std::string>& ids) {
-  for (std::size_t c = table.columns.size(); c-- > 0;) {
-    if (ids.count(table.columns[c].id) == 0) continue;
-    const auto at = static_cast<std::ptrdiff_t>(c);
-    table.columns.erase(table.columns.begin() + at);
-    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
-  }
+  for (std::size_t c = table.columns.size(); c-- > 0;)
+    if (ids.count(table.columns[c].id) != 0) erase_column(table, c);
   return table;
 }
 
@@ -57,8 +53,8 @@ void summarise(const std::vector<Comparison>& comparisons, const std::vector<Pla
       for (const std::string& sentence : sentences_of(*verdict))
         summary.blocks.emplace_back(Paragraph{sentence + c.title_suffix});
     add_card_figure(c, tracks, prefix_of(c), summary, document);
-    if (std::optional<Table> overview = overview_table(c); overview && ran)
-      summary.blocks.emplace_back(std::move(*overview));
+    if (ran && has_overview(c))
+      append_if(overview_table(c), summary);
     else if (has_costs(c))
       summary.blocks.emplace_back(ran ? without(solver_table(c), {"message", "active_bounds"})
                                       : cost_table(c));
@@ -105,7 +101,7 @@ Section convergence(const std::vector<Comparison>& comparisons, Document& docume
     add_convergence_figures(c, prefix_of(c), section, document);
     add_repeat_figure(c, prefix_of(c), section, document);
     append_if(repeats_table(c), section);
-    if (overview_table(c) && best_run(c).row != nullptr)
+    if (has_overview(c) && best_run(c).row != nullptr)
       section.blocks.emplace_back(without(solver_table(c), {"message", "active_bounds"}));
   }
   return section;

@@ -20,13 +20,6 @@ namespace {
 
 constexpr std::size_t kFewProblems = 4;  // whose solvers are all shown where a table sums them up
 
-// Tables that there are only when somebody wants them, and those over all problems.
-bool asked_for(const std::string& id) {
-  const std::string name = id.substr(id.rfind('.') + 1);
-  return name == "bootstrap" || name == "profile" || name == "combinations" || name == "problems_summary" ||
-         name == "problems_unsolved";
-}
-
 void append(std::vector<Table>& tables, std::optional<Table> table) {
   if (table) tables.push_back(std::move(*table));
 }
@@ -51,9 +44,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
   const std::vector<Comparison> comparisons = compare(records);
   for (const Comparison& comparison : comparisons) {
     append(tables, verdict_table(comparison));
-    std::optional<Table> overview = overview_table(comparison);
-    const bool summarised = overview.has_value();
-    append(tables, std::move(overview));
+    append(tables, overview_table(comparison));
     std::optional<Table> found = found_table(comparison);
     if (found) append_notes(*found, notes);
     const bool noted = found.has_value();
@@ -61,7 +52,7 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     for (Table& table : error_tables(comparison)) tables.push_back(std::move(table));
     for (Table& table : drive_tables(comparison)) tables.push_back(std::move(table));
     Table solvers = solver_table(comparison);
-    solvers.key = !summarised && (overall.empty() || comparisons.size() <= kFewProblems);
+    solvers.key = !has_overview(comparison) && (overall.empty() || comparisons.size() <= kFewProblems);
     append_parameters(tables, comparison, solvers, noted ? std::vector<std::string>{} : notes);
     append(tables, totals_table(comparison));
     for (Table& table : validation_tables(comparison)) tables.push_back(std::move(table));
@@ -75,7 +66,6 @@ std::vector<Table> comparison_tables(const std::vector<RunRecord>& records,
     append(tables, repeats_table(comparison));
   }
   for (Table& table : overall) tables.push_back(std::move(table));
-  for (Table& table : tables) table.key = table.key || asked_for(table.id);
   return tables;
 }
 

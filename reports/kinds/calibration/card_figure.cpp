@@ -26,7 +26,6 @@ using vega::json;
 
 constexpr double kPanel = 190;       // px
 constexpr double kResolution = 500;  // parts of a panel's range that thinning respects
-constexpr const char* kReference = "motion capture";
 
 // A drive, and how far the two paths are from motion capture.
 struct Drive {
@@ -198,7 +197,7 @@ void add_card_figure(const Comparison& comparison, const std::vector<PlacedTrack
   if (best.row == nullptr || comparison.nominal() == nullptr || best.record->errors.empty()) return;
   json views = json::array();
   const std::string path_data = prefix + "card.paths", parameter_data = prefix + "card.parameters";
-  const std::vector<std::string> names{kReference, "nominal", best.row->label};
+  const std::vector<std::string> names{vega::kReferenceLabel, "nominal", best.row->label};
   std::string caption;
   if (const std::optional<Shown> shown = drives_to_show(comparison, best.row->label, tracks)) {
     const std::vector<const PoseTrack*> paths{&shown->set->reference, shown->nominal, shown->best};

@@ -84,17 +84,6 @@ std::vector<Column> overview_columns() {
           text_column("termination", "stop", "")};
 }
 
-void drop_empty_columns(Table& table) {
-  for (std::size_t c = table.columns.size(); c-- > 1;) {
-    const auto at = static_cast<std::ptrdiff_t>(c);
-    if (std::any_of(table.rows.begin(), table.rows.end(),
-                    [c](const std::vector<Cell>& row) { return !row[c].empty(); }))
-      continue;
-    table.columns.erase(table.columns.begin() + at);
-    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + at);
-  }
-}
-
 const IntervalRecord* interval_of(const RunRecord& record, const std::string& name) {
   if (!record.trust) return nullptr;
   for (const ParameterIntervalRecord& p : record.trust->parameters)
@@ -130,10 +119,13 @@ BestRun best_run(const Comparison& comparison) {
   return best;
 }
 
+bool has_overview(const Comparison& comparison) {
+  return std::any_of(comparison.rows.begin(), comparison.rows.end(),
+                     [](const ComparisonRow& row) { return !row.errors.empty(); });
+}
+
 std::optional<Table> overview_table(const Comparison& comparison) {
-  if (std::none_of(comparison.rows.begin(), comparison.rows.end(),
-                   [](const ComparisonRow& row) { return !row.errors.empty(); }))
-    return std::nullopt;
+  if (!has_overview(comparison)) return std::nullopt;
   Table table;
   table.id = comparison.id_prefix + "overview";
   table.title = "Methods: RMS of position and heading, total error against nominal" + comparison.title_suffix;
@@ -142,7 +134,8 @@ std::optional<Table> overview_table(const Comparison& comparison) {
     add_reference(table, row);
     table.rows.push_back(overview_row(comparison, row));
   }
-  drop_empty_columns(table);
+  for (std::size_t c = table.columns.size(); c-- > 1;)
+    if (empty_column(table, c)) erase_column(table, c);
   table.key = true;
   return table;
 }

@@ -17,6 +17,7 @@ namespace odobench {
 //   runs, evaluations, seconds, bounds (parameters on a bound of their box), termination
 // Columns without content are left out. Empty without errors per recording: the table of solvers says it all.
 std::optional<Table> overview_table(const Comparison& comparison);
+bool has_overview(const Comparison& comparison);
 
 // "found": the parameters of the run with the lowest J in one sentence, mm where the unit is m, with 95 %
 // intervals where there are any and "(bound)" behind those on a bound. Empty where overview_table() is, and

@@ -142,6 +142,7 @@ std::vector<Table> summary_tables(const std::vector<RunRecord>& records) {
   std::vector<Table> tables{summary_table(groups_of(runs))};
   if (Table unsolved = unsolved_table(runs); !unsolved.rows.empty())
     tables.insert(tables.begin(), std::move(unsolved));
+  for (Table& table : tables) table.key = true;
   return tables;
 }
 

@@ -18,7 +18,6 @@ namespace {
 
 using vega::json;
 
-constexpr const char* kReference = "motion capture";
 constexpr double kSquareWidth = 440;                              // px, where both axes have one scale
 constexpr double kPathResolution = 1200, kErrorResolution = 300;  // parts of a range
 
@@ -162,7 +161,7 @@ std::string error_rows(const std::vector<Curve>& curves, std::size_t stretches) 
 class Charts {
  public:
   Charts(const TrackSet& set, const Trajectory& trajectory) : left_out_(trajectory.left_out) {
-    labels_.push_back(kReference);
+    labels_.push_back(vega::kReferenceLabel);
     for (const StoredTrack& track : set.tracks) labels_.push_back(track.label);
     methods_.assign(labels_.begin() + 1, labels_.end());
     choices_ = {vega::choice_of("method", "Method", "all methods", methods_), drive_choice(trajectory)};
@@ -235,7 +234,7 @@ class Charts {
                   {"order", {{"field", "t"}, {"type", "quantitative"}}},
                   {"detail", {{{"field", "d"}, {"type", "nominal"}}}}};
     std::vector<std::string> named = methods_;
-    if (with_reference) named.emplace_back(kReference);
+    if (with_reference) named.emplace_back(vega::kReferenceLabel);
     encoding["color"] = vega::line_color("label", named);
     json reference{{"transform", {vega::filter("datum.s == 0")}},
                    {"mark", {{"type", "line"}, {"style", "reference"}}},

@@ -55,6 +55,7 @@ void add_rows(const RunRecord& record, const BootstrapFigures& figures, Table& t
 Table table_of(const RunRecord& record, const BootstrapFigures& figures, const Comparison& comparison) {
   Table table;
   table.id = comparison.id_prefix + "bootstrap";
+  table.key = true;
   table.title = fmt::format("Bootstrap of {}: {} {} resamples{}", record.label, figures.replicates(),
                             figures.scheme, comparison.title_suffix);
   table.columns = {text_column("quantity"),

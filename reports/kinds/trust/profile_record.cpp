@@ -91,6 +91,7 @@ std::optional<Table> profile_table(const Comparison& comparison) {
   if (record == nullptr) return std::nullopt;
   Table table;
   table.id = comparison.id_prefix + "profile";
+  table.key = true;
   table.title = fmt::format("J along single parameters, all others fitted again, of {}{}", record->label,
                             comparison.title_suffix);
   table.columns = {text_column("parameter"),

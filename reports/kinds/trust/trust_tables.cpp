@@ -53,14 +53,11 @@ std::vector<Column> interval_columns() {
 
 // Columns of what is empty in all rows are left out for people and machines alike.
 void drop_empty(Table& table, const std::string& id) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (table.columns[c].id != id) continue;
-    for (const std::vector<Cell>& row : table.rows)
-      if (!row[c].empty()) return;
-    table.columns.erase(table.columns.begin() + static_cast<std::ptrdiff_t>(c));
-    for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
-    return;
-  }
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].id == id) {
+      if (empty_column(table, c)) erase_column(table, c);
+      return;
+    }
 }
 
 Table table_of(const char* id, const char* title, const Comparison& comparison, std::vector<Column> columns) {
@@ -141,6 +138,7 @@ Table combinations_table(const Comparison& comparison, const std::vector<TrustRo
   Table table = table_of("combinations", "Numbers asked for, +- 95 %", comparison,
                          {text_column("name"), text_column("formula"), text_column("unit"),
                           number_column("nominal"), number_column("estimate")});
+  table.key = true;
   bool of_the_map = false, others = false;
   for (const TrustRow& row : rows)
     for (const CombinationRecord& c : row.trust->combinations) {
